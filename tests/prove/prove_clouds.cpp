@@ -37,6 +37,10 @@ const World worlds[] = {
      "spread_px2",
      1.0 + 1.0 / 12,
      {.shape = Shape::planes, .print_m = 0.02, .blur_px = 1}},
+    // Of things whose shape is not known: clouds against each other.
+    {"null-overlaps", "nothing", "-", 0, {.shape = Shape::balls, .overlaps = true}},
+    {"gamma-overlaps", "projector.gamma", "gamma", 1.3, {.shape = Shape::balls, .gamma = 1.3, .overlaps = true}},
+    {"lens-overlaps", "projector.lens", "k1", 0.05, {.shape = Shape::planes, .k1 = 0.05, .overlaps = true}},
     // By lib/render; how deep light of a translucent solid comes from is not known, and is more than nothing.
     {"rendered-null-balls", "nothing", "-", 0, {.shape = Shape::balls, .rendered = 64}},
     {"rendered-gamma-planes", "projector.gamma", "gamma", 1.3, {.shape = Shape::planes, .gamma = 1.3, .rendered = 64}},

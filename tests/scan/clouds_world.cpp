@@ -52,6 +52,19 @@ class World {
     const double toe = calibrated_.toe_rad;
     view_.projector.at[0] += w.nudged_m * std::cos(toe), view_.projector.at[2] -= w.nudged_m * std::sin(toe);
   }
+  // Of the first camera, in the frame of the thing.
+  Rigid<frame::World, frame::Camera> world_from_camera() const {
+    Rigid<frame::World, frame::Rig> w;
+    if (view_.shape == ScanWorld::Shape::plane) {
+      const double angle = std::atan(view_.tilt);
+      w.rotation = quaternion_of_rotation_vector({0, angle, 0});
+      w.translation_m = -w.rotate(Vec3{0, 0, view_.distance});
+    } else {
+      w.translation_m = {-view_.ball_x, 0, -view_.distance};
+    }
+    w.translation_m.x += w_.apart_m * static_cast<double>(cloud_);
+    return w * station_of(view_.left).rig_from_camera;
+  }
   double time() const { return 3600 * (static_cast<double>(cloud_) - 0.5 * static_cast<double>(w_.clouds - 1)); }
   const ScanWorld& view() const { return view_; }
   const Pinhole& calibrated() const { return calibrated_; }
@@ -241,23 +254,32 @@ manifest::Document measured_clouds(const CloudsWorld& w, const std::filesystem::
     const World world(w, c);
     const scan::Cloud cloud =
         scan::points_of_projector(world.codes(sequence), station_of(world.view().left), station_of(world.calibrated()));
-    scan::write_cloud(folder / format("c%zu.ply", c), cloud, {});
+    const Rigid<frame::World, frame::Camera> pose = world.world_from_camera();
+    const Rigid<frame::World, frame::Rig> world_from_rig =
+        w.overlaps ? pose * inverse(station_of(world.view().left).rig_from_camera) : Rigid<frame::World, frame::Rig>{};
+    scan::write_cloud(folder / format("c%zu.ply", c), cloud, world_from_rig);
     if (w.shape == CloudsWorld::Shape::grooves) write_mesh(folder / format("m%zu.ply", c), world.grooves());
     files[c] = format("\"f%zu\": {\"path\": \"c%zu.ply\"}", c, c);
     meshes[c] = format("\"m%zu\": {\"file\": \"m%zu\"}", c, c);
     if (w.shape == CloudsWorld::Shape::grooves) files[c] += format(", \"m%zu\": {\"path\": \"m%zu.ply\"}", c, c);
     const std::string groove = format("\"model\": \"mesh\", \"mesh\": \"m%zu\"", c);
-    clouds[c] = format(
-        "\"c%zu\": {\"file\": \"f%zu\", \"cameras\": [\"camera\", \"projector\"], \"projection\": \"p\", "
-        "\"shape\": {%s}}",
-        c, c,
-        w.shape == CloudsWorld::Shape::planes    ? "\"model\": \"plane\""
-        : w.shape == CloudsWorld::Shape::grooves ? groove.c_str()
-                                                 : "\"model\": \"sphere\", \"radius_m\": 0.1");
+    clouds[c] =
+        format("\"c%zu\": {\"file\": \"f%zu\", \"cameras\": [\"camera\", \"projector\"], \"projection\": \"p\"%s%s%s}",
+               c, c, w.overlaps ? "" : ", \"shape\": {",
+               w.overlaps                               ? ""
+               : w.shape == CloudsWorld::Shape::planes  ? "\"model\": \"plane\""
+               : w.shape == CloudsWorld::Shape::grooves ? groove.c_str()
+                                                        : "\"model\": \"sphere\", \"radius_m\": 0.1",
+               w.overlaps ? "" : "}");
+    const std::string placed = format(
+        "\"world_from_camera\": {\"rotation\": [%.17g, %.17g, %.17g, %.17g], \"translation_m\": [%.17g, "
+        "%.17g, %.17g]},",
+        pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.translation_m.x, pose.translation_m.y,
+        pose.translation_m.z);
     images[c] = format(
-        "{\"id\": \"i%zu\", \"camera\": \"camera\", \"projection\": \"p\", \"shows\": 0, \"group\": "
+        "{\"id\": \"i%zu\", %s \"camera\": \"camera\", \"projection\": \"p\", \"shows\": 0, \"group\": "
         "\"c%zu\", \"time_s\": %.17g}",
-        c, c, world.time());
+        c, w.overlaps ? placed.c_str() : "", c, world.time());
   });
   const auto joined = [](const std::vector<std::string>& parts) {
     std::string text;

@@ -25,6 +25,8 @@ struct CloudsWorld {
   double print_m = 0;           // side of the squares that are printed on planes, a fifth as bright as the ground
   double blur_px = 0;           // Gaussian standard deviation of the camera's picture
   double albedo = 0.6;          // rendered
+  bool overlaps = false;        // all clouds are of one thing, whose shape is not told; images say where the camera was
+  double apart_m = 0;           // overlaps: the second cloud is told to be so far from the first, and so on
   bool gray = false;            // else cosines of 1, 8 and 40 periods at three shifts
   double read = 0.002, gain = 8000;
   std::uint64_t seed = 1;

@@ -36,30 +36,52 @@ struct CloudModel::State {
 CloudModel::CloudModel(const CloudsInput& input)
     : input_(input),
       told_{scan::ToldPlace(input.sequence, scan::Axis::column), scan::ToldPlace(input.sequence, scan::Axis::row)} {
+  for (std::size_t g = 0; g < input.views.size(); ++g) add_group(g);
   double columns = 0, rows = 0;
-  for (const CloudView& view : input.views) {
-    rows_.emplace_back();
-    for (std::size_t p = 0; p < view.points.size(); ++p)
-      if (std::optional<CloudRow> row = row_of(view, p)) {
-        columns += std::abs(row->along.x), rows += std::abs(row->along.y);
-        rows_.back().push_back(*row);
-      }
-  }
+  for (const Side& side : sides_[0])
+    for (const CloudRow& row : side.rows) columns += std::abs(row.along.x), rows += std::abs(row.along.y);
   if (rows > columns) telling_ = scan::Axis::row;
   light_themselves();
 }
 
+// Points that either side can speak of.
+void CloudModel::add_group(std::size_t group) {
+  const CloudView& view = input_.views[group];
+  const CloudView* against = input_.against.empty() ? nullptr : &input_.against[group];
+  Side own{&view, {}, {}}, other{against, {}, {}};
+  for (std::size_t p = 0; p < view.points.size(); ++p) {
+    const std::optional<CloudRow> row = row_of(view, p);
+    const std::optional<CloudRow> beside = row && against != nullptr ? row_of(*against, p) : std::nullopt;
+    if (!row || (against != nullptr && !beside)) continue;
+    own.rows.push_back(*row);
+    if (beside) other.rows.push_back(*beside);
+  }
+  sides_[0].push_back(std::move(own)), sides_[1].push_back(std::move(other));
+}
+
 void CloudModel::light_themselves() {
-  indirect_.resize(input_.views.size());
   if (!input_.projector) return;
   const std::vector<double> x = told_[0].periods(), y = told_[1].periods();
-  for (std::size_t v = 0; v < rows_.size(); ++v) {
-    if (!input_.views[v].shape.may_light_itself()) continue;
+  for (Side& side : sides_[0]) {
+    if (!side.view->shape.may_light_itself()) continue;
     std::vector<IndirectLight::Point> points;
-    for (const CloudRow& row : rows_[v])
+    for (const CloudRow& row : side.rows)
       points.push_back({row.origin + row.depth_m * row.direction, row.normal, row.expected});
-    indirect_[v] = IndirectLight(input_.views[v].shape, points, input_.stations[1], x, y);
+    side.indirect = IndirectLight(side.view->shape, points, input_.stations[1], x, y);
   }
+}
+
+double CloudModel::value_m(std::size_t group, std::size_t row) const {
+  const auto off = [row](const Side& side) {
+    const CloudRow& r = side.rows[row];
+    return r.metre_per_px * dot(r.told - r.expected, r.along);
+  };
+  return off(sides_[0][group]) - (sides_[1][group].rows.empty() ? 0 : off(sides_[1][group]));
+}
+
+double CloudModel::sigma_m(std::size_t group, std::size_t row) const {
+  const double own = sides_[0][group].rows[row].sigma_m;
+  return sides_[1][group].rows.empty() ? own : std::hypot(own, sides_[1][group].rows[row].sigma_m);
 }
 
 std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t point) const {
@@ -69,8 +91,9 @@ std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t po
   const scan::Station &first = input_.stations[0], &second = input_.stations[1];
   const camera::Ray ray = first.lens.ray(p.pixel);
   row.origin = first.rig_from_camera * ray.origin_m, row.direction = first.rig_from_camera.rotate(ray.direction);
-  const std::vector<double> unmoved(view.shape.freedoms().size(), 0.0);
-  const auto met = view.shape.met(row.origin, row.direction, unmoved);
+  const CloudShape& surface = view.patches.empty() ? view.shape : view.patches[point];
+  const std::vector<double> unmoved(surface.freedoms().size(), 0.0);
+  const auto met = surface.met(row.origin, row.direction, unmoved);
   if (!met) return std::nullopt;
   // The point on the ray of its own pixel, which of two cameras it passes at a distance of its noise.
   const double at = dot(p.position_m - row.origin, row.direction);
@@ -88,7 +111,7 @@ std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t po
   const Vec3 n = met->normal;
   row.sigma_m = std::sqrt(std::max(least_variance, c[0] * n.x * n.x + c[3] * n.y * n.y + c[5] * n.z * n.z +
                                                        2 * (c[1] * n.x * n.y + c[2] * n.x * n.z + c[4] * n.y * n.z)));
-  row.across = across(view, row), row.normal = n;
+  row.across = across(surface, row), row.normal = n;
   if (!view.bright.empty() && view.bright[point][12] > 0) {
     const equation::Neighbours& b = view.bright[point];
     row.bright = &b, row.slope = Vec2{b[13] - b[11], b[17] - b[7]} * (0.5 / b[12]);
@@ -98,14 +121,14 @@ std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t po
 }
 
 // By where the rays of the pixel's neighbours go.
-std::array<Vec2, 2> CloudModel::across(const CloudView& view, const CloudRow& row) const {
+std::array<Vec2, 2> CloudModel::across(const CloudShape& shape, const CloudRow& row) const {
   const scan::Station& first = input_.stations[0];
-  const std::vector<double> unmoved(view.shape.freedoms().size(), 0.0);
+  const std::vector<double> unmoved(shape.freedoms().size(), 0.0);
   std::array<Vec2, 2> found;
   for (std::size_t side = 0; side < 2; ++side) {
     const camera::Ray ray = first.lens.ray(row.pixel + (side == 0 ? Vec2{1, 0} : Vec2{0, 1}));
     const Vec3 origin = first.rig_from_camera * ray.origin_m, direction = first.rig_from_camera.rotate(ray.direction);
-    const auto met = view.shape.met(origin, direction, unmoved);
+    const auto met = shape.met(origin, direction, unmoved);
     const auto seen = met ? seen_by(input_.stations[1], origin + met->distance_m * direction) : std::nullopt;
     if (seen) found[side] = *seen - row.expected;
   }
@@ -113,21 +136,22 @@ std::array<Vec2, 2> CloudModel::across(const CloudView& view, const CloudRow& ro
 }
 
 CloudModel::State CloudModel::state_of(std::span<const CloudRole> roles, std::span<const double> values,
-                                       std::size_t view) const {
-  State s{input_.stations, std::vector<double>(input_.views[view].shape.freedoms().size(), 0.0)};
+                                       std::size_t side, std::size_t group) const {
+  const CloudView& view = *sides_[side][group].view;
+  State s{input_.stations, std::vector<double>(view.shape.freedoms().size(), 0.0)};
   camera::Intrinsics lens[2] = {s.stations[0].lens.intrinsics(), s.stations[1].lens.intrinsics()};
   const camera::Intrinsics stated[2] = {lens[0], lens[1]};
   std::array<double, 6> pose{};
   for (std::size_t p = 0; p < roles.size(); ++p) {
     const CloudRole& r = roles[p];
-    const double v = values[p], change = r.by_time ? v * input_.views[view].later_s : v * input_.views[view].warmer_K;
+    const double v = values[p], change = r.by_time ? v * view.later_s : v * view.warmer_K;
     camera::Intrinsics& own = lens[r.device];
     switch (r.part) {
       case Part::shape:
-        if (r.view == view) s.shape[r.index] = v;
+        if (side == 0 && r.group == group) s.shape[r.index] = v;
         break;
       case Part::along:
-        if (r.view == view) s.along_m = v;
+        if (r.index == view.cloud) s.along_m = v;
         break;
       case Part::pose: pose[r.index] += v; break;
       case Part::drift: pose[r.index] += change; break;
@@ -163,29 +187,29 @@ Vec2 CloudModel::phase_slope(const CloudRow& row, std::size_t axis, double perio
 }
 
 // What other walls and a blur add, in pixels of the axis.
-double CloudModel::turned_px(const State& s, std::size_t row, std::size_t view, std::size_t axis) const {
-  const CloudRow& r = rows_[view][row];
-  const bool walls = s.albedo != 0 && indirect_[view].any(), blur = s.spread_px2 != 0 && r.bright != nullptr;
+double CloudModel::turned_px(const State& s, const Side& side, std::size_t row, std::size_t axis) const {
+  const CloudRow& r = side.rows[row];
+  const bool walls = s.albedo != 0 && side.indirect.any(), blur = s.spread_px2 != 0 && r.bright != nullptr;
   if (!walls && !blur) return 0;
   std::vector<double> turns = told_[axis].periods();
   for (std::size_t k = 0; k < turns.size(); ++k) {
     const Vec2 slope = phase_slope(r, axis, turns[k]);
-    turns[k] = walls ? indirect_[view].turn(row, axis, k, s.albedo) : 0;
+    turns[k] = walls ? side.indirect.turn(row, axis, k, s.albedo) : 0;
     if (blur) turns[k] += equation::structured_light_edge(*r.bright, slope, s.spread_px2);
   }
   return told_[axis].mean_of_turns(turns);
 }
 
-std::optional<Vec2> CloudModel::pixel_told(const State& s, std::size_t number, std::size_t v) const {
-  const CloudView& view = input_.views[v];
-  const CloudRow& row = rows_[v][number];
+std::optional<Vec2> CloudModel::pixel_told(const State& s, const Side& side, std::size_t number) const {
+  const CloudRow& row = side.rows[number];
+  const CloudShape& shape = side.view->patches.empty() ? side.view->shape : side.view->patches[row.point];
   Vec3 origin = row.origin, direction = row.direction;
   if (!s.first_as_stated) {
     const camera::Ray ray = s.stations[0].lens.ray(row.pixel);
     origin = s.stations[0].rig_from_camera * ray.origin_m;
     direction = s.stations[0].rig_from_camera.rotate(ray.direction);
   }
-  const auto met = view.shape.met(origin, direction, s.shape);
+  const auto met = shape.met(origin, direction, s.shape);
   if (!met) return std::nullopt;
   Vec3 at = origin + met->distance_m * direction;
   if (s.depth_m != 0)
@@ -202,17 +226,22 @@ std::optional<Vec2> CloudModel::pixel_told(const State& s, std::size_t number, s
   };
   pixel->x = told_[0](pixel->x, {s.gamma, moves.x, covers(&Vec2::x)});
   pixel->y = told_[1](pixel->y, {s.gamma, moves.y, covers(&Vec2::y)});
-  pixel->x += turned_px(s, number, v, 0), pixel->y += turned_px(s, number, v, 1);
+  pixel->x += turned_px(s, side, number, 0), pixel->y += turned_px(s, side, number, 1);
   return pixel;
 }
 
-void CloudModel::predict(std::span<const CloudRole> roles, std::span<const double> values, std::size_t view,
+void CloudModel::predict(std::span<const CloudRole> roles, std::span<const double> values, std::size_t group,
                          std::span<double> prediction) const {
-  const State state = state_of(roles, values, view);
-  const std::vector<CloudRow>& rows = rows_[view];
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto pixel = pixel_told(state, i, view);
-    prediction[i] = pixel ? rows[i].metre_per_px * dot(*pixel - rows[i].expected, rows[i].along) : 0;
+  std::ranges::fill(prediction, 0.0);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Side& side = sides_[s][group];
+    if (side.rows.empty()) continue;
+    const State state = state_of(roles, values, s, group);
+    for (std::size_t i = 0; i < side.rows.size(); ++i) {
+      const CloudRow& row = side.rows[i];
+      const auto pixel = pixel_told(state, side, i);
+      if (pixel) prediction[i] += (s == 0 ? 1 : -1) * row.metre_per_px * dot(*pixel - row.expected, row.along);
+    }
   }
 }
 

@@ -27,10 +27,11 @@ struct CloudRole {
     albedo,
     spread
   } part = Part::shape;
-  std::size_t index = 0;  // shape, pose, drift: of its numbers; lens: term; principal: x or y; thermal: focal, x, y
+  std::size_t index = 0;  // shape, pose, drift: of its numbers; lens: term; principal: x or y; thermal: focal, x, y;
+                          // along: cloud
   std::size_t device = 1;
-  std::size_t view = static_cast<std::size_t>(-1);  // shape, along
-  bool by_time = false;                             // drift, thermal: per second, else per kelvin
+  std::size_t group = static_cast<std::size_t>(-1);  // shape
+  bool by_time = false;                              // drift, thermal: per second, else per kelvin
 };
 
 // A point, and what of the stated rig the prediction is linear about.
@@ -55,30 +56,41 @@ class CloudModel {
  public:
   explicit CloudModel(const CloudsInput& input);
   const CloudsInput& input() const { return input_; }
-  const std::vector<CloudRow>& rows(std::size_t view) const { return rows_[view]; }
+  // Of the views; what they are held against has rows of its own beside them.
+  const std::vector<CloudRow>& rows(std::size_t group) const { return sides_[0][group].rows; }
+  const IndirectLight& indirect(std::size_t group) const { return sides_[0][group].indirect; }
+  // How far a point lies off the shape, or off what the other cloud saw, metres along the normal, behind it positive.
+  double value_m(std::size_t group, std::size_t row) const;
+  // Of a row's value: its own noise and that of what it is held against.
+  double sigma_m(std::size_t group, std::size_t row) const;
   const scan::ToldPlace& told_place(scan::Axis axis) const { return told_[static_cast<std::size_t>(axis)]; }
-  const IndirectLight& indirect(std::size_t view) const { return indirect_[view]; }
   // Which axis' pixel says most of where the points lie.
   scan::Axis telling() const { return telling_; }
 
   // Metres along the normal, row by row.
-  void predict(std::span<const CloudRole> roles, std::span<const double> values, std::size_t view,
+  void predict(std::span<const CloudRole> roles, std::span<const double> values, std::size_t group,
                std::span<double> prediction) const;
 
  private:
   struct State;
-  State state_of(std::span<const CloudRole> roles, std::span<const double> values, std::size_t view) const;
-  std::array<Vec2, 2> across(const CloudView& view, const CloudRow& row) const;
+  struct Side {
+    const CloudView* view = nullptr;
+    std::vector<CloudRow> rows;
+    IndirectLight indirect;
+  };
+  State state_of(std::span<const CloudRole> roles, std::span<const double> values, std::size_t side,
+                 std::size_t group) const;
+  std::array<Vec2, 2> across(const CloudShape& shape, const CloudRow& row) const;
+  void add_group(std::size_t group);
   void light_themselves();
   std::optional<CloudRow> row_of(const CloudView& view, std::size_t point) const;
-  std::optional<Vec2> pixel_told(const State& state, std::size_t row, std::size_t view) const;
-  double turned_px(const State& state, std::size_t row, std::size_t view, std::size_t axis) const;
+  std::optional<Vec2> pixel_told(const State& state, const Side& side, std::size_t row) const;
+  double turned_px(const State& state, const Side& side, std::size_t row, std::size_t axis) const;
   Vec2 phase_slope(const CloudRow& row, std::size_t axis, double periods) const;
 
   const CloudsInput& input_;
   std::array<scan::ToldPlace, 2> told_;
-  std::vector<std::vector<CloudRow>> rows_;
-  std::vector<IndirectLight> indirect_;  // view by view
+  std::array<std::vector<Side>, 2> sides_;  // views, and what they are held against
   scan::Axis telling_ = scan::Axis::column;
 };
 

@@ -46,11 +46,18 @@ CloudShape CloudShape::of_mesh(std::shared_ptr<const ShapeMesh> mesh, const Rigi
   return s;
 }
 
+CloudShape CloudShape::patch(Vec3 at_m, Vec3 normal, Vec3 pivot_m) {
+  CloudShape s;
+  s.kind_ = Kind::patch, s.at_ = at_m, s.normal_ = normal, s.middle_ = pivot_m;
+  return s;
+}
+
 std::span<const Freedom> CloudShape::freedoms() const {
   switch (kind_) {
     case Kind::plane: return of_plane;
     case Kind::ball: return of_ball;
-    case Kind::mesh: return of_a_mesh;
+    case Kind::mesh:
+    case Kind::patch: return of_a_mesh;
   }
   return {};
 }
@@ -71,6 +78,13 @@ std::optional<CloudShape::Met> CloudShape::met(Vec3 origin, Vec3 direction, std:
     if (!(distance > 0)) return std::nullopt;
     return Met{distance, (from + distance * direction) * (1 / radius_m_)};
   }
+  if (kind_ == Kind::patch) {
+    const Mat3 turn = matrix_of(quaternion_of_rotation_vector({change[0], change[1], change[2]}));
+    const Vec3 normal = turn * normal_, at = middle_ + turn * (at_ - middle_) + Vec3{change[3], change[4], change[5]};
+    const double against = dot(normal, direction), distance = dot(at - origin, normal) / against;
+    if (!(distance > 0) || !std::isfinite(distance)) return std::nullopt;
+    return Met{distance, against < 0 ? normal : -normal};
+  }
   // The mesh turned about its middle: the ray goes to its frame.
   const Quaternion back = conjugate(quaternion_of_rotation_vector({change[0], change[1], change[2]}));
   const Mat3 turn = matrix_of(back);
@@ -89,6 +103,7 @@ std::optional<CloudShape::Met> CloudShape::met(Vec3 origin, Vec3 direction, std:
 
 double CloudShape::off(Vec3 point) const {
   if (kind_ == Kind::plane) return dot(point - middle_, normal_);
+  if (kind_ == Kind::patch) return dot(point - at_, normal_);
   if (kind_ == Kind::ball) return norm(point - middle_) - radius_m_;
   return mesh_->tree().nearest(inverse(pose_) * point).distance_m;
 }

@@ -35,6 +35,9 @@ class CloudShape {
   // Begins where it is told; the fit's base model moves it.
   static CloudShape of_mesh(std::shared_ptr<const ShapeMesh> mesh, const Rigid<frame::Rig, frame::Object>& pose);
 
+  // A small part of a surface, flat, that stands as told; moved, it turns about `pivot_m` first.
+  static CloudShape patch(Vec3 at_m, Vec3 normal, Vec3 pivot_m);
+
   // Numbers that say where it stands, all zero where it was fitted, and their names with units and usual sizes.
   struct Freedom {
     const char *name, *unit;
@@ -53,8 +56,9 @@ class CloudShape {
   double off(Vec3 point) const;
 
  private:
-  enum class Kind { plane, ball, mesh } kind_ = Kind::plane;
-  Vec3 middle_, normal_, along_, across_;  // plane: normal towards the camera; ball, mesh: middle
+  enum class Kind { plane, ball, mesh, patch } kind_ = Kind::plane;
+  Vec3 middle_, normal_, along_, across_;  // plane: normal towards the camera; ball, mesh: middle; patch: pivot
+  Vec3 at_;                                // patch
   double radius_m_ = 0;
   std::shared_ptr<const ShapeMesh> mesh_;
   Rigid<frame::Rig, frame::Object> pose_;

@@ -153,7 +153,7 @@ void upgrade_clouds(const Problem& problem, const CloudsInput& input, const Clou
     for (const std::size_t p : c.parameters) {
       const CloudRole& r = declared.roles[p];
       if (in_rig(r.part) || in_camera(r.part)) continue;
-      write(c.id(), p, r.part == Part::along ? input.views[r.view].name : c.on.empty() ? "" : c.on[0]);
+      write(c.id(), p, r.part == Part::along ? input.clouds[r.index] : c.on.empty() ? "" : c.on[0]);
     }
   }
 }

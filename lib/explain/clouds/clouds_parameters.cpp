@@ -12,6 +12,7 @@ namespace gonio::explain {
 namespace {
 
 using Part = CloudRole::Part;
+constexpr double misplaced = 10;  // times a freedom's size: 1 cm, 10 mrad
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string rate_of(const mechanism::Parameter& p) {
@@ -78,17 +79,19 @@ class CloudDeclaration {
     const auto freedoms = input_.views[v].shape.freedoms();
     for (std::size_t i = 0; i < freedoms.size(); ++i) {
       CloudRole role;
-      role.part = Part::shape, role.index = i, role.view = v;
-      result.base.push_back(add({input_.views[v].name + "/" + freedoms[i].name,
-                                 freedoms[i].unit,
-                                 0,
-                                 0,
-                                 -infinity,
-                                 infinity,
-                                 freedoms[i].size,
-                                 {},
-                                 {v}},
-                                role));
+      role.part = Part::shape, role.index = i, role.group = v;
+      Parameter place{input_.views[v].name + "/" + freedoms[i].name,
+                      freedoms[i].unit,
+                      0,
+                      0,
+                      -infinity,
+                      infinity,
+                      freedoms[i].size,
+                      {},
+                      {v}};
+      // Clouds were placed, if not well; a ball's turns another cloud of it hardly holds.
+      if (!input_.against.empty()) place.prior_sigma = misplaced * freedoms[i].size;
+      result.base.push_back(add(std::move(place), role));
     }
   }
 
@@ -148,12 +151,17 @@ class CloudDeclaration {
           add({prefix + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size_of(p), {}, {}}, role));
       return;
     }
-    for (std::size_t v = 0; v < input_.views.size(); ++v) {  // every cloud has a motion of its own
-      role.view = v;
-      c.on.push_back(input_.views[v].name);
-      c.parameters.push_back(
-          add({input_.views[v].name + "/" + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size_of(p), {}, {v}},
-              role));
+    for (std::size_t c_own = 0; c_own < input_.clouds.size(); ++c_own) {  // every cloud has a motion of its own
+      std::vector<std::size_t> groups;
+      for (std::size_t g = 0; g < input_.views.size(); ++g)
+        if (input_.views[g].cloud == c_own || (!input_.against.empty() && input_.against[g].cloud == c_own))
+          groups.push_back(g);
+      if (groups.empty()) continue;
+      role.index = c_own;
+      c.on.push_back(input_.clouds[c_own]);
+      c.parameters.push_back(add(
+          {input_.clouds[c_own] + "/" + p.name, p.unit, p.start, p.neutral, p.lower, p.upper, size_of(p), {}, groups},
+          role));
     }
   }
 

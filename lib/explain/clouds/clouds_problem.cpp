@@ -13,7 +13,9 @@
 namespace gonio::explain {
 namespace {
 
-constexpr double never = 2;         // a share: by what is left of a usual change over the noise alone
+constexpr double fall =
+    1e-6;                    // of squares whose rows are some thousands: less than a hundredth of one degree of freedom
+constexpr double never = 2;  // a share: by what is left of a usual change over the noise alone
 constexpr double estimable = 0.02;  // share of a parameter's signature that free and earlier parameters must leave
 
 class CloudsProblem final : public Problem {
@@ -28,14 +30,13 @@ class CloudsProblem final : public Problem {
   void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
     model_.predict(declared_.roles, values, group, prediction);
   }
-  // A shape's place moves its own cloud alone.
   void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                 std::span<double> derivatives) const override {
     const std::size_t rows = model_.rows(group).size();
     std::vector<std::size_t> own, places;
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      const std::size_t view = declared_.roles[columns[c]].view;
-      if (view != static_cast<std::size_t>(-1) && view != group) continue;
+      const std::vector<std::size_t>& groups = parameters_[columns[c]].groups;
+      if (!groups.empty() && std::ranges::find(groups, group) == groups.end()) continue;
       own.push_back(columns[c]), places.push_back(c);
     }
     std::vector<double> found(own.size() * rows);
@@ -48,8 +49,11 @@ class CloudsProblem final : public Problem {
 
   std::string domain() const override { return "clouds"; }
   std::string unit() const override { return "m"; }
-  std::string score_name() const override { return "RMS distance off the shape"; }
-  std::string group_noun() const override { return "cloud"; }
+  std::string score_name() const override {
+    return overlaps() ? "RMS distance from each other" : "RMS distance off the shape";
+  }
+  std::string group_noun() const override { return overlaps() ? "overlap" : "cloud"; }
+  double fit_tolerance() const override { return fall; }
   Importance importance() const override { return Importance::share_of_residual; }
 
   std::string remarks(const Explanation& e) const override { return clouds_remarks(*this, model_, e); }
@@ -61,6 +65,8 @@ class CloudsProblem final : public Problem {
   }
 
  private:
+  bool overlaps() const { return !input_.against.empty(); }
+
   void observe() {
     Observations& o = observations_;
     o.first.push_back(0);
@@ -68,9 +74,10 @@ class CloudsProblem final : public Problem {
     for (std::size_t v = 0; v < input_.views.size(); ++v) {
       o.group.push_back(input_.views[v].name);
       std::uint32_t last = 0;
-      for (const CloudRow& row : model_.rows(v)) {
-        o.value.push_back(row.metre_per_px * dot(row.told - row.expected, row.along));
-        o.sigma.push_back(row.sigma_m);
+      for (std::size_t i = 0; i < model_.rows(v).size(); ++i) {
+        const CloudRow& row = model_.rows(v)[i];
+        o.value.push_back(model_.value_m(v, i));
+        o.sigma.push_back(model_.sigma_m(v, i));
         o.norm.push_back(1);
         const std::uint32_t tile = input_.views[v].tile[row.point];
         o.block.push_back(blocks + tile);

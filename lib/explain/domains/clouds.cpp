@@ -1,4 +1,4 @@
-// Clouds of structured light against shapes that are known.
+// Clouds of structured light against shapes that are known, or against each other.
 #include "explain/clouds/clouds_problem.h"
 #include "explain/domain.h"
 #include "manifest/document.h"
@@ -11,9 +11,8 @@ namespace {
 std::vector<std::filesystem::path> files_of_clouds(const manifest::Document& document) {
   std::vector<std::filesystem::path> files;
   for (const auto& [name, cloud] : document.clouds) {
-    if (!cloud.shape) continue;
     files.push_back(manifest::resolve(document, cloud.file, "/clouds/" + name + "/file"));
-    if (cloud.shape->mesh.empty()) continue;
+    if (!cloud.shape || cloud.shape->mesh.empty()) continue;
     const std::string& file = document.meshes.at(cloud.shape->mesh).file;
     if (!file.empty()) files.push_back(manifest::resolve(document, file, "/meshes/" + cloud.shape->mesh + "/file"));
   }
@@ -25,9 +24,11 @@ std::vector<std::filesystem::path> files_of_clouds(const manifest::Document& doc
 const Domain& clouds() {
   static const Domain domain{
       .name = "clouds",
-      .sentence = "clouds (structured-light) that state the shape their points lie on: planes, spheres, meshes",
+      .sentence =
+          "clouds (structured-light) that state the shape their points lie on: planes, spheres, meshes; or, where "
+          "they were placed in the world, clouds that overlap, against each other",
       .order = 8,
-      .applies = has_known_shapes,
+      .applies = has_clouds_to_ask,
       .problems =
           [](const manifest::Document& document, const ProblemOptions&) {
             std::vector<std::unique_ptr<Problem>> problems;

@@ -120,6 +120,22 @@ TEST(Clouds, TellThatTheRigDrifts) {
   EXPECT_THAT(listed, testing::Contains("rig.drift")) << a.e.sentence;
 }
 
+// Of things whose shape nobody knows.
+TEST(Clouds, TellAgainstEachOtherTheProjectorsGamma) {
+  const Answer a = explained({.shape = Shape::balls, .clouds = 4, .gamma = 1.3, .overlaps = true, .seed = 12});
+  EXPECT_THAT(a.named, testing::ElementsAre("projector.gamma")) << a.e.sentence;
+  expect_covered(a, "projector.gamma.gamma", 1.3, 0.03);
+  EXPECT_EQ(a.problem->observations().groups(), 6U);
+}
+
+TEST(Clouds, ThatDoNotOverlapAreRefused) {
+  ScratchFolder folder;
+  const manifest::Document document =
+      measured_clouds({.shape = Shape::balls, .clouds = 4, .overlaps = true, .apart_m = 1}, folder.path());
+  ASSERT_TRUE(has_clouds_to_ask(document));
+  EXPECT_THROW((void)clouds_inputs(document), Error);
+}
+
 TEST(Clouds, OfBitsAloneAreRefused) {
   ScratchFolder folder;
   const manifest::Document document = measured_clouds({.clouds = 4, .gray = true}, folder.path());
