@@ -10,22 +10,11 @@
 namespace gonio::scan {
 namespace {
 
-using Harmonics = std::array<double, 16>;  // from the first on, which is 1
-
-// `half_rad`: of a pixel of the projector.
-Harmonics harmonics_of(const ToldPlace::Bend& bend, double half_rad) {
-  const auto mean = [](double half) { return half != 0 ? std::sin(half) / half : 1; };
-  Harmonics a;
-  double amplitude = 1;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double h = static_cast<double>(i + 1);
-    a[i] = amplitude * mean(h * half_rad) * mean(h * half_rad * bend.covers_px);
-    amplitude *= (bend.gamma - h) / (bend.gamma + h + 1);
-  }
-  return a;
+double mean_of(double half) {
+  return half != 0 ? std::sin(half) / half : 1;
 }
 
-double light_of(const Harmonics& amplitudes, double x) {
+double light_of(std::span<const double> amplitudes, double x) {
   const double c = std::cos(x);
   double sum = 0, here = c, before = 1;  // cos((h + 1) x) = 2 cos x cos(h x) - cos((h - 1) x)
   for (const double a : amplitudes) {
@@ -49,27 +38,65 @@ ToldPlace::ToldPlace(const Sequence& sequence, Axis axis) : size_(sequence.size(
     set.shifts_rad.push_back(s.shift_rad), set.times.push_back(static_cast<double>(f) / last - 0.5);
   }
   for (auto& [periods, set] : found) {
-    set.solve = shift_fit(set.shifts_rad);
+    const Mat3 solve = shift_fit(set.shifts_rad);
+    for (const double s : set.shifts_rad) {
+      const Vec3 fit = solve * Vec3{1, std::cos(s), std::sin(s)};
+      set.weighs.emplace_back(fit.y, fit.z);
+    }
+    for (std::size_t i = 0; i < harmonics; ++i) {
+      const double h = static_cast<double>(i + 1);
+      set.own_pixel[i] = mean_of(h * pi * periods / size_);
+      for (std::size_t k = 0; k < set.weighs.size(); ++k) {
+        set.along[i] += 0.5 * set.weighs[k] * std::polar(1.0, -h * set.shifts_rad[k]);
+        set.against[i] += 0.5 * set.weighs[k] * std::polar(1.0, h * set.shifts_rad[k]);
+      }
+    }
     sets_.push_back(std::move(set));
   }
 }
 
+ToldPlace::Amplitudes ToldPlace::amplitudes(const Set& set, const Bend& bend) const {
+  const double half = pi * set.periods / size_ * bend.covers_px, twice_cosine = 2 * std::cos(half);
+  Amplitudes a;
+  double amplitude = 1, sine = std::sin(half), before = 0;  // sin((h + 1) x) = 2 cos x sin(h x) - sin((h - 1) x)
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double h = static_cast<double>(i + 1);
+    a[i] = amplitude * set.own_pixel[i] * (half != 0 ? sine / (h * half) : 1);
+    amplitude *= (bend.gamma - h) / (bend.gamma + h + 1);
+    const double next = twice_cosine * sine - before;
+    before = sine, sine = next;
+  }
+  return a;
+}
+
+// C + i S.
+std::complex<double> ToldPlace::fitted(const Set& set, const Bend& bend, double theta) const {
+  const Amplitudes a = amplitudes(set, bend);
+  std::complex<double> sum = 0;
+  if (bend.moves_px != 0) {
+    const double moves_rad = 2 * pi * set.periods / size_ * bend.moves_px;
+    for (std::size_t k = 0; k < set.weighs.size(); ++k)
+      sum += set.weighs[k] * light_of(a, theta + moves_rad * set.times[k] - set.shifts_rad[k]);
+    return sum;
+  }
+  const std::complex<double> turn = std::polar(1.0, theta);
+  std::complex<double> turned = turn;
+  for (std::size_t i = 0; i < harmonics; ++i) {
+    sum += a[i] * (set.along[i] * turned + set.against[i] * std::conj(turned));
+    turned *= turn;
+  }
+  return sum;
+}
+
 double ToldPlace::operator()(double place, const Bend& bend) const {
   if (bend.gamma == 1 && bend.moves_px == 0) return place;
-  std::vector<double> turns;
+  double sum = 0, weights = 0;
   for (const Set& set : sets_) {
-    const double rad_per_px = 2 * pi * set.periods / size_, theta = rad_per_px * (place + 0.5);
-    const Harmonics amplitudes = harmonics_of(bend, 0.5 * rad_per_px);
-    Vec3 sums;
-    for (std::size_t k = 0; k < set.shifts_rad.size(); ++k) {
-      const double shift = set.shifts_rad[k],
-                   read = light_of(amplitudes, theta + rad_per_px * bend.moves_px * set.times[k] - shift);
-      sums += Vec3{read, read * std::cos(shift), read * std::sin(shift)};
-    }
-    const Vec3 fit = set.solve * sums;
-    turns.push_back(std::remainder(std::atan2(fit.z, fit.y) - theta, 2 * pi));
+    const double rad_per_px = 2 * pi * set.periods / size_, theta = rad_per_px * (place + 0.5),
+                 weight = rad_per_px * rad_per_px * static_cast<double>(set.shifts_rad.size());
+    sum += weight * std::remainder(std::arg(fitted(set, bend, theta)) - theta, 2 * pi) / rad_per_px, weights += weight;
   }
-  return place + mean_of_turns(turns);
+  return weights > 0 ? place + sum / weights : place;
 }
 
 std::vector<double> ToldPlace::periods() const {

@@ -1,6 +1,8 @@
 // What least squares over the shifts of cosines (decode.h) make of readings that are no cosines: of a projector whose
 // light is a power of what it is told (projector.gamma), of a thing that moves meanwhile (structured-light.motion).
 #pragma once
+#include <array>
+#include <complex>
 #include <span>
 #include <vector>
 
@@ -36,11 +38,18 @@ class ToldPlace {
   double finest_phase(double place) const;
 
  private:
+  static constexpr std::size_t harmonics = 16;
+  using Amplitudes = std::array<double, harmonics>;  // from the first on, which is 1
   struct Set {
     double periods = 1;
-    std::vector<double> shifts_rad, times;  // times: -1/2 the first frame, 1/2 the last
-    Mat3 solve;
+    std::vector<double> shifts_rad, times;     // times: -1/2 the first frame, 1/2 the last
+    std::vector<std::complex<double>> weighs;  // a reading in C + i S of the fit
+    Amplitudes own_pixel{};                    // what a square of the projector leaves of each harmonic
+    // C + i S of the h-th harmonic alone, of amplitude 1 at the phase x: along[h] exp(i h x) + against[h] exp(-i h x).
+    std::array<std::complex<double>, harmonics> along{}, against{};
   };
+  Amplitudes amplitudes(const Set& set, const Bend& bend) const;
+  std::complex<double> fitted(const Set& set, const Bend& bend, double theta) const;
   std::vector<Set> sets_;  // ascending periods
   double size_ = 1;
 };
