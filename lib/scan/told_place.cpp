@@ -57,14 +57,18 @@ ToldPlace::ToldPlace(const Sequence& sequence, Axis axis) : size_(sequence.size(
 
 ToldPlace::Amplitudes ToldPlace::amplitudes(const Set& set, const Bend& bend) const {
   const double half = pi * set.periods / size_ * bend.covers_px, twice_cosine = 2 * std::cos(half);
+  const double each = 2 * pi * set.periods / size_, spot = std::exp(-0.5 * bend.spot_px2 * each * each);
+  // spot^(h^2): each is the last times spot^(2 h + 1).
+  double left = spot, next_left = spot * spot * spot;
   Amplitudes a;
   double amplitude = 1, sine = std::sin(half), before = 0;  // sin((h + 1) x) = 2 cos x sin(h x) - sin((h - 1) x)
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double h = static_cast<double>(i + 1);
-    a[i] = amplitude * set.own_pixel[i] * (half != 0 ? sine / (h * half) : 1);
+    a[i] = amplitude * left * set.own_pixel[i] * (half != 0 ? sine / (h * half) : 1);
     amplitude *= (bend.gamma - h) / (bend.gamma + h + 1);
     const double next = twice_cosine * sine - before;
     before = sine, sine = next;
+    left *= next_left, next_left *= spot * spot;
   }
   return a;
 }
@@ -92,9 +96,10 @@ double ToldPlace::operator()(double place, const Bend& bend) const {
   if (bend.gamma == 1 && bend.moves_px == 0) return place;
   double sum = 0, weights = 0;
   for (const Set& set : sets_) {
-    const double rad_per_px = 2 * pi * set.periods / size_, theta = rad_per_px * (place + 0.5),
-                 weight = rad_per_px * rad_per_px * static_cast<double>(set.shifts_rad.size());
-    sum += weight * std::remainder(std::arg(fitted(set, bend, theta)) - theta, 2 * pi) / rad_per_px, weights += weight;
+    const double rad_per_px = 2 * pi * set.periods / size_, theta = rad_per_px * (place + 0.5);
+    const std::complex<double> fit = fitted(set, bend, theta);
+    const double weight = rad_per_px * rad_per_px * static_cast<double>(set.shifts_rad.size()) * std::norm(fit);
+    sum += weight * std::remainder(std::arg(fit) - theta, 2 * pi) / rad_per_px, weights += weight;
   }
   return weights > 0 ? place + sum / weights : place;
 }
@@ -105,11 +110,12 @@ std::vector<double> ToldPlace::periods() const {
   return all;
 }
 
-double ToldPlace::mean_of_turns(std::span<const double> turns_rad) const {
+double ToldPlace::mean_of_turns(std::span<const double> turns_rad, const Bend& bend) const {
   double sum = 0, weights = 0;
   for (std::size_t s = 0; s < sets_.size(); ++s) {
-    const double rad_per_px = 2 * pi * sets_[s].periods / size_,
-                 weight = rad_per_px * rad_per_px * static_cast<double>(sets_[s].shifts_rad.size());
+    const double rad_per_px = 2 * pi * sets_[s].periods / size_, amplitude = amplitudes(sets_[s], bend)[0],
+                 weight =
+                     rad_per_px * rad_per_px * amplitude * amplitude * static_cast<double>(sets_[s].shifts_rad.size());
     sum += weight * turns_rad[s] / rad_per_px, weights += weight;
   }
   return weights > 0 ? sum / weights : 0;

@@ -16,24 +16,27 @@ namespace gonio::scan {
 // A bent cosine is one of the same period with harmonics: ((1 + cos x) / 2)^gamma = cos^(2 gamma)(x / 2) is the sum of
 // a(h) cos(h x), a(h + 1) / a(h) = (gamma - h) / (gamma + h + 1) from h = 1 on (Gradshteyn & Ryzhik 3.631.9). Of each
 // the square pixels of the projector leave sinc(h periods / size), and a pixel of the camera that covers `covers_px` of
-// them sinc(h periods covers_px / size). What a projector out of focus does is not known here: it blurs harmonics more
-// than the cosine, so that an exponent is taken for one nearer to 1. Four equal shifts see the third and fifth
-// harmonic, which two exponents about 1.5 make alike; three see the second.
+// them sinc(h periods covers_px / size), and a projector out of focus, whose spots have the variance spot_px2 beyond
+// their squares, exp(-spot_px2 (2 pi h periods / size)^2 / 2): where that is not known, an exponent is taken for one
+// nearer to
+// 1. Four equal shifts see the third and fifth harmonic, which two exponents about 1.5 make alike; three see the
+// second.
 class ToldPlace {
  public:
   struct Bend {
     double gamma = 1;
     double moves_px = 0;   // by which the place is another, evenly from the first frame to the last
     double covers_px = 0;  // of a pixel of the camera
+    double spot_px2 = 0;   // variance of the projector's spots beyond their squares
   };
   ToldPlace(const Sequence& sequence, Axis axis);
   bool any() const { return !sets_.empty(); }
-  // The mean of what all numbers of periods say, weighed as by noise, of a pixel that `place` lights in the middle of
-  // the sequence. `place` itself where gamma is 1 and nothing moves.
+  // The mean of what all numbers of periods say, weighed by their noise, of a pixel that `place` lights in the middle
+  // of the sequence. `place` itself where gamma is 1 and nothing moves.
   double operator()(double place, const Bend& bend) const;
   // Numbers of periods, ascending; and the mean, in pixels, of what turns their phases by so many radians.
   std::vector<double> periods() const;
-  double mean_of_turns(std::span<const double> turns_rad) const;
+  double mean_of_turns(std::span<const double> turns_rad, const Bend& bend) const;
   // 2 pi periods (place + 1/2) / size of the most periods, not wrapped.
   double finest_phase(double place) const;
 

@@ -37,6 +37,12 @@ const World worlds[] = {
      "spread_px2",
      1.0 + 1.0 / 12,
      {.shape = Shape::planes, .print_m = 0.02, .blur_px = 1}},
+    // Beside a tone curve that the manifest states.
+    {"defocus-planes",
+     "structured-light.defocus",
+     "spot_px2",
+     1.0 + 1.0 / 12,
+     {.shape = Shape::planes, .gamma = 2, .gamma_known = true, .spot_px = 1}},
     // Of things whose shape is not known: clouds against each other.
     {"null-overlaps", "nothing", "-", 0, {.shape = Shape::balls, .overlaps = true}},
     {"gamma-overlaps", "projector.gamma", "gamma", 1.3, {.shape = Shape::balls, .gamma = 1.3, .overlaps = true}},

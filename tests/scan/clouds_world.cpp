@@ -128,6 +128,20 @@ class World {
     return (std::lround(at[0] * slope / w_.print_m) + std::lround(at[1] / w_.print_m)) % 2 == 0 ? 1 : 0.2;
   }
 
+  void spots(std::vector<double>& shown) const {
+    if (w_.spot_px == 0) return;
+    const std::vector<double> from = shown;
+    const int reach = static_cast<int>(5 * w_.spot_px) + 1, size = static_cast<int>(from.size());
+    for (int u = 0; u < size; ++u) {
+      double sum = 0, weights = 0;
+      for (int k = -reach; k <= reach; ++k) {
+        const double weight = std::exp(-0.5 * k * k / (w_.spot_px * w_.spot_px));
+        sum += weight * from[static_cast<std::size_t>(std::clamp(u + k, 0, size - 1))], weights += weight;
+      }
+      shown[static_cast<std::size_t>(u)] = sum / weights;
+    }
+  }
+
   void blur(std::vector<double>& lights) const {
     if (w_.blur_px == 0) return;
     const int width = view_.left.width, height = view_.left.height, reach = static_cast<int>(5 * w_.blur_px) + 1;
@@ -157,6 +171,7 @@ class World {
     std::vector<double> shown;
     for (int u = 0; u < size; ++u)
       shown.push_back(std::pow(scan::light_at(sequence, frame, rows ? 0 : u, rows ? u : 0), w_.gamma));
+    spots(shown);
     std::vector<double> lights;
     const int places = w_.depth_m > 0 ? depths : 1;
     for (int i = 0; i < now.left.width * now.left.height; ++i) {
@@ -230,6 +245,12 @@ std::string frames_text(const scan::Sequence& sequence) {
   return "[" + text + "]";
 }
 
+std::string known_text(const CloudsWorld& w) {
+  return w.gamma_known
+             ? format(", \"mechanisms\": {\"projector.gamma\": {\"on\": [\"projector\"], \"gamma\": %.17g}}", w.gamma)
+             : "";
+}
+
 void write_mesh(const std::filesystem::path& path, const RenderedWorld& world) {
   io::TriangleMesh mesh;
   for (const Board& b : world.boards) {
@@ -295,7 +316,7 @@ manifest::Document measured_clouds(const CloudsWorld& w, const std::filesystem::
       format("\"width_px\": %d, \"height_px\": %d, \"frames\": ", sequence.width_px, sequence.height_px) +
       frames_text(sequence) + "}}, " +
       (w.shape == CloudsWorld::Shape::grooves ? "\"meshes\": {" + joined(meshes) + "}, " : "") + "\"clouds\": {" +
-      joined(clouds) + "}, \"images\": [" + joined(images) + "]}";
+      joined(clouds) + "}, \"images\": [" + joined(images) + "]" + known_text(w) + "}";
   write_file(folder / "clouds.json", text);
   return manifest::read_document(folder / "clouds.json");
 }

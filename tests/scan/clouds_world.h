@@ -14,6 +14,7 @@ struct CloudsWorld {
   enum class Shape { planes, balls, grooves } shape = Shape::planes;
   std::size_t clouds = 6;
   double gamma = 1;             // of the projector
+  bool gamma_known = false;     // the manifest states it
   double moves_m = 0;           // of each thing, from the first frame to the last, away from the rig; signs alternate
   double nudged_m = 0;          // of the projector, along its x, since the rig was calibrated
   double turned_rad = 0;        // about its y
@@ -23,6 +24,7 @@ struct CloudsWorld {
   double rendered = 0;          // > 0: by lib/render (rendered_world.h), so many samples a pixel
   double scattering_per_m = 0;  // rendered: of a translucent solid (see there)
   double print_m = 0;           // side of the squares that are printed on planes, a fifth as bright as the ground
+  double spot_px = 0;           // Gaussian standard deviation of the projector's spots, along the lines
   double blur_px = 0;           // Gaussian standard deviation of the camera's picture
   double albedo = 0.6;          // rendered
   bool overlaps = false;        // all clouds are of one thing, whose shape is not told; images say where the camera was

@@ -29,7 +29,7 @@ std::optional<Vec2> seen_by(const scan::Station& station, Vec3 point) {
 struct CloudModel::State {
   std::vector<scan::Station> stations;
   std::vector<double> shape;
-  double gamma = 1, depth_m = 0, along_m = 0, albedo = 0, spread_px2 = 0;
+  double gamma = 1, depth_m = 0, along_m = 0, albedo = 0, spread_px2 = 0, spot_px2 = 0;
   bool first_as_stated = true;
 };
 
@@ -168,6 +168,7 @@ CloudModel::State CloudModel::state_of(std::span<const CloudRole> roles, std::sp
       case Part::depth: s.depth_m = v; break;
       case Part::albedo: s.albedo = v; break;
       case Part::spread: s.spread_px2 = v; break;
+      case Part::spot: s.spot_px2 = v; break;
     }
   }
   for (std::size_t d = 0; d < 2; ++d)
@@ -186,6 +187,12 @@ Vec2 CloudModel::phase_slope(const CloudRow& row, std::size_t axis, double perio
   return axis == 0 ? Vec2{row.across[0].x, row.across[1].x} * each : Vec2{row.across[0].y, row.across[1].y} * each;
 }
 
+// Of the second device, along its x (0) or y, by a pixel of the first.
+double CloudModel::covered(const CloudRow& row, std::size_t axis) {
+  return axis == 0 ? std::max(std::abs(row.across[0].x), std::abs(row.across[1].x))
+                   : std::max(std::abs(row.across[0].y), std::abs(row.across[1].y));
+}
+
 // What other walls and a blur add, in pixels of the axis.
 double CloudModel::turned_px(const State& s, const Side& side, std::size_t row, std::size_t axis) const {
   const CloudRow& r = side.rows[row];
@@ -197,7 +204,7 @@ double CloudModel::turned_px(const State& s, const Side& side, std::size_t row, 
     turns[k] = walls ? side.indirect.turn(row, axis, k, s.albedo) : 0;
     if (blur) turns[k] += equation::structured_light_edge(*r.bright, slope, s.spread_px2);
   }
-  return told_[axis].mean_of_turns(turns);
+  return told_[axis].mean_of_turns(turns, {s.gamma, 0, covered(r, axis), s.spot_px2});
 }
 
 std::optional<Vec2> CloudModel::pixel_told(const State& s, const Side& side, std::size_t number) const {
@@ -221,11 +228,8 @@ std::optional<Vec2> CloudModel::pixel_told(const State& s, const Side& side, std
   const Vec3 axis = s.stations[0].rig_from_camera.rotate({0, 0, 1});
   const double farther = s.along_m * dot(met->normal, axis) / dot(met->normal, direction);
   const Vec2 moves = row.along * (row.px_per_metre * farther);
-  const auto covers = [&row](double Vec2::*of) {
-    return std::max(std::abs(row.across[0].*of), std::abs(row.across[1].*of));
-  };
-  pixel->x = told_[0](pixel->x, {s.gamma, moves.x, covers(&Vec2::x)});
-  pixel->y = told_[1](pixel->y, {s.gamma, moves.y, covers(&Vec2::y)});
+  pixel->x = told_[0](pixel->x, {s.gamma, moves.x, covered(row, 0), s.spot_px2});
+  pixel->y = told_[1](pixel->y, {s.gamma, moves.y, covered(row, 1), s.spot_px2});
   pixel->x += turned_px(s, side, number, 0), pixel->y += turned_px(s, side, number, 1);
   return pixel;
 }

@@ -25,7 +25,8 @@ struct CloudRole {
     depth,
     along,
     albedo,
-    spread
+    spread,
+    spot
   } part = Part::shape;
   std::size_t index = 0;  // shape, pose, drift: of its numbers; lens: term; principal: x or y; thermal: focal, x, y;
                           // along: cloud
@@ -86,6 +87,7 @@ class CloudModel {
   std::optional<CloudRow> row_of(const CloudView& view, std::size_t point) const;
   std::optional<Vec2> pixel_told(const State& state, const Side& side, std::size_t row) const;
   double turned_px(const State& state, const Side& side, std::size_t row, std::size_t axis) const;
+  static double covered(const CloudRow& row, std::size_t axis);
   Vec2 phase_slope(const CloudRow& row, std::size_t axis, double periods) const;
 
   const CloudsInput& input_;

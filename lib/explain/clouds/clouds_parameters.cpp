@@ -8,6 +8,11 @@
 #include "base/error.h"
 #include "camera/intrinsics.h"
 
+namespace gonio::mechanism {
+const Mechanism& projector_gamma();
+const Mechanism& structured_light_defocus();
+}  // namespace gonio::mechanism
+
 namespace gonio::explain {
 namespace {
 
@@ -50,6 +55,8 @@ CloudRole role_of(const mechanism::Parameter& p, std::size_t device) {
     role.part = Part::albedo;
   else if (name == "spread_px2")
     role.part = Part::spread;
+  else if (name == "spot_px2")
+    role.part = Part::spot;
   else
     role.part = Part::lens, role.index = camera::distortion_index(name, "explain");
   return role;
@@ -130,9 +137,21 @@ class CloudDeclaration {
       }
   }
 
+  bool is_given(const std::string& id) const { return std::ranges::find(input_.given, id) != input_.given.end(); }
+
   void join(Candidate c) {
     if (c.parameters.empty()) return;
-    if (std::ranges::find(input_.given, c.id()) == input_.given.end()) {
+    // Spots show in bent cosines alone: beside a bend that is asked they are what is not known of it, beside one that
+    // is known they can be asked.
+    if (c.mechanism == &mechanism::structured_light_defocus() && !is_given(mechanism::projector_gamma().id)) {
+      for (const std::size_t p : c.parameters) {
+        Parameter& spot = result.parameters[p];
+        spot.prior_sigma = c.mechanism->parameters[0].typical, spot.neutral = spot.start;
+        result.base.push_back(p);
+      }
+      return;
+    }
+    if (!is_given(c.id())) {
       result.candidates.push_back(std::move(c));
       return;
     }
@@ -179,6 +198,7 @@ class CloudDeclaration {
           if (model_.indirect(v).any()) return true;
         return false;
       case Part::gamma:
+      case Part::spot:
       case Part::along: return input_.projector && cosines;  // codes of two cameras are bent alike
       case Part::lens: {
         const camera::Intrinsics& lens = input_.stations[role.device].lens.intrinsics();

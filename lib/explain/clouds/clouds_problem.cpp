@@ -154,23 +154,37 @@ class CloudsProblem final : public Problem {
   }
 
   // A shape along which its own points slide: a groove along its edge, a turned part about its axis.
-  void hold_what_slides(const std::vector<Estimable::Column>& columns) {
+  void hold_what_slides() {
+    const std::vector<double> values = neutral_values();
+    std::vector<std::size_t> shapes, kept;
+    std::vector<Estimable::Column> columns;
     std::vector<double> usual;
-    for (const std::size_t p : base_) usual.push_back(parameters_[p].size);
-    std::vector<std::size_t> kept;
-    for (const std::size_t k : Estimable({}).kept(columns, never, usual)) kept.push_back(base_[k]);
+    for (const std::size_t p : base_) {
+      if (declared_.roles[p].part != CloudRole::Part::shape) {
+        kept.push_back(p);
+        continue;
+      }
+      shapes.push_back(p), columns.push_back(column_of(p, values)), usual.push_back(parameters_[p].size);
+    }
+    for (const std::size_t k : Estimable({}).kept(columns, never, usual)) kept.push_back(shapes[k]);
+    std::ranges::sort(kept);
     base_ = std::move(kept);
   }
 
-  void keep_estimable() {
+  std::vector<double> neutral_values() const {
     std::vector<double> values;
     for (const Parameter& p : parameters_) values.push_back(p.neutral);
+    return values;
+  }
+
+  void keep_estimable() {
+    hold_what_slides();
+    const std::vector<double> values = neutral_values();
     const auto columns_of = [&](const std::vector<std::size_t>& parameters) {
       std::vector<Estimable::Column> columns;
       for (const std::size_t p : parameters) columns.push_back(column_of(p, values));
       return columns;
     };
-    hold_what_slides(columns_of(base_));
     const Estimable beside(columns_of(base_));
     for (Candidate c : declared_.candidates) {
       std::vector<std::size_t> kept;
