@@ -17,7 +17,7 @@ namespace gonio::explain {
 namespace {
 
 using Part = CloudRole::Part;
-constexpr double misplaced = 10;  // times a freedom's size: 1 cm, 10 mrad
+constexpr double misplaced = 1;  // times a freedom's size: 1 mm, 1 mrad
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string rate_of(const mechanism::Parameter& p) {
@@ -96,7 +96,8 @@ class CloudDeclaration {
                       freedoms[i].size,
                       {},
                       {v}};
-      // Clouds were placed, if not well; a ball's turns another cloud of it hardly holds.
+      // Clouds were placed, if not well; turns of a ball are hardly held by another cloud of it, and would take up
+      // noise.
       if (!input_.against.empty()) place.prior_sigma = misplaced * freedoms[i].size;
       result.base.push_back(add(std::move(place), role));
     }
