@@ -44,35 +44,46 @@ inline double chi_square_tail(double value, double degrees) {
   return front * h;
 }
 
-// Integral of f(cos theta, phi) over a rectangle: four by four Gauss points, split until the parts agree with the
-// whole.
-// Patches that hold `crowd` of the points `hints` are split in any case.
-inline double integrate_patch(const std::function<double(double, double)>& f, double z0, double z1, double p0,
-                              double p1, double tolerance, int depth = 0, const std::vector<Vec2>& hints = {},
-                              std::size_t crowd = 600) {
+// f at four by four Gauss points of a rectangle, times its area.
+inline double gauss_rule(const std::function<double(double, Vec2)>& f, double z0, double z1, double p0, double p1) {
   constexpr std::array<double, 4> node = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                           0.8611363115940526};
   constexpr std::array<double, 4> weight = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                             0.3478548451374538};
-  const auto rule = [&](double za, double zb, double pa, double pb) {
-    double sum = 0;
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j)
-        sum +=
-            weight[i] * weight[j] * f((za + zb) / 2 + node[i] * (zb - za) / 2, (pa + pb) / 2 + node[j] * (pb - pa) / 2);
-    return sum * (zb - za) * (pb - pa) / 4;
-  };
+  std::array<Vec2, 4> turned;
+  for (std::size_t j = 0; j < 4; ++j) {
+    const double phi = (p0 + p1) / 2 + node[j] * (p1 - p0) / 2;
+    turned[j] = {std::cos(phi), std::sin(phi)};
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j)
+      sum += weight[i] * weight[j] * f((z0 + z1) / 2 + node[i] * (z1 - z0) / 2, turned[j]);
+  return sum * (z1 - z0) * (p1 - p0) / 4;
+}
+
+// Integral of f(cos theta, (cos phi, sin phi)) over a rectangle: by gauss_rule, split until the parts agree with the
+// whole, which is the rule of the rectangle itself where a caller has it already. Patches that hold `crowd` of the
+// points `hints` are split in any case, and so is what is not a sixteenth yet: its own rule is not asked for.
+inline double integrate_patch(const std::function<double(double, Vec2)>& f, double z0, double z1, double p0, double p1,
+                              double tolerance, int depth = 0, const std::vector<Vec2>& hints = {},
+                              std::size_t crowd = 600, std::optional<double> whole = std::nullopt) {
   const double zm = (z0 + z1) / 2, pm = (p0 + p1) / 2;
-  if (hints.size() < crowd || depth > 16) {
-    const double parts = rule(z0, zm, p0, pm) + rule(zm, z1, p0, pm) + rule(z0, zm, pm, p1) + rule(zm, z1, pm, p1);
-    if (depth >= 2 && (std::abs(parts - rule(z0, z1, p0, p1)) < tolerance || depth > 16)) return parts;
+  std::array<std::optional<double>, 4> parts;  // low left, high left, low right, high right
+  const bool split = hints.size() >= crowd && depth <= 16;
+  if (!split && depth >= 1) {
+    parts = {gauss_rule(f, z0, zm, p0, pm), gauss_rule(f, zm, z1, p0, pm), gauss_rule(f, z0, zm, pm, p1),
+             gauss_rule(f, zm, z1, pm, p1)};
+    const double sum = *parts[0] + *parts[1] + *parts[2] + *parts[3];
+    if (depth > 16) return sum;
+    if (depth >= 2 && std::abs(sum - (whole ? *whole : gauss_rule(f, z0, z1, p0, p1))) < tolerance) return sum;
   }
   const auto quarter = [&](bool high, bool right) {
     std::vector<Vec2> inside;
     for (const Vec2 p : hints)
       if ((p.x >= zm) == high && (p.y >= pm) == right) inside.push_back(p);
     return integrate_patch(f, high ? zm : z0, high ? z1 : zm, right ? pm : p0, right ? p1 : pm, tolerance / 2,
-                           depth + 1, inside, crowd);
+                           depth + 1, inside, crowd, parts[(right ? 2 : 0) + (high ? 1 : 0)]);
   };
   return quarter(false, false) + quarter(true, false) + quarter(false, true) + quarter(true, true);
 }
@@ -129,9 +140,9 @@ inline double chi_square_p(const Sampler& sampler, std::uint64_t seed) {
     ++seen[row * chi_columns + column];
     where[row * chi_columns + column].push_back({local.z, (turn - 0.5) * 2 * pi});
   }
-  const auto f = [&](double z, double phi) {
+  const auto f = [&](double z, Vec2 turned) {
     const double r = std::sqrt(std::max(0.0, 1 - z * z));
-    return sampler.density(frame.to_world({r * std::cos(phi), r * std::sin(phi), z}));
+    return sampler.density(frame.to_world({r * turned.x, r * turned.y, z}));
   };
   const auto say_otherwise = [&](std::size_t bin) {
     return std::abs(seen[bin] - expected[bin]) > 3 * std::sqrt(expected[bin]) + 3;

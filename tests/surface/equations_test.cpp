@@ -25,9 +25,9 @@ Rgb grey(double x) {
 
 // Integral over the hemisphere by patches of (cosine, azimuth).
 double over_hemisphere(const std::function<double(Vec3)>& f, double tolerance = 1e-7) {
-  const auto patch = [&](double z, double phi) {
+  const auto patch = [&](double z, Vec2 turned) {
     const double r = std::sqrt(1 - z * z);
-    return f({r * std::cos(phi), r * std::sin(phi), z});
+    return f({r * turned.x, r * turned.y, z});
   };
   double sum = 0;
   for (int i = 0; i < 8; ++i)

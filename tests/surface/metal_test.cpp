@@ -93,9 +93,9 @@ TEST(RoughMetal, SamplerDrawsFromItsDensityWhereTheLobeIsARidge) {
 template <Slopes kind>
 void expect_cover(const Roughness& roughness) {
   const Facets<kind> facets(roughness);
-  const auto patch = [&](double z, double phi) {
+  const auto patch = [&](double z, Vec2 turned) {
     const double r = std::sqrt(1 - z * z);
-    return facets.density_of_normals({r * std::cos(phi), r * std::sin(phi), z}) * z;
+    return facets.density_of_normals({r * turned.x, r * turned.y, z}) * z;
   };
   double sum = 0;
   for (int i = 0; i < 8; ++i)

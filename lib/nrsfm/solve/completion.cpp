@@ -86,17 +86,18 @@ void turn_to_axes(TwoFactors& at) {
   for (const Eigen::MatrixXd& spread : at.spread_b) square += spread;
   const linear::SymmetricEigen<Eigen::MatrixXd> points(square / static_cast<double>(at.b.cols()));
   const Eigen::VectorXd roots = points.eigenvalues().cwiseMax(1e-300).cwiseSqrt();
+  // Each product in a matrix of its own, as it is anyway: chains take a quarter longer to compile.
   const Eigen::MatrixXd whitened = points.eigenvectors() * roots.asDiagonal();
-  Eigen::MatrixXd motion = whitened.transpose() * at.a.transpose() * at.a * whitened;
-  for (const Eigen::MatrixXd& spread : at.spread_a) motion += 2 * whitened.transpose() * spread * whitened;
+  Eigen::MatrixXd motion = ((whitened.transpose() * at.a.transpose()).eval() * at.a).eval() * whitened;
+  for (const Eigen::MatrixXd& spread : at.spread_a) motion += (2 * whitened.transpose() * spread).eval() * whitened;
   const Eigen::MatrixXd axes = linear::SymmetricEigen<Eigen::MatrixXd>(motion).eigenvectors().rowwise().reverse();
   const Eigen::MatrixXd back = whitened * axes;
   const Eigen::MatrixXd forth =
-      axes.transpose() * roots.cwiseInverse().asDiagonal() * points.eigenvectors().transpose();
+      (axes.transpose() * roots.cwiseInverse().asDiagonal()).eval() * points.eigenvectors().transpose();
   at.a = (at.a * back).eval();
   at.b = (forth * at.b).eval();
-  for (Eigen::MatrixXd& spread : at.spread_a) spread = (back.transpose() * spread * back).eval();
-  for (Eigen::MatrixXd& spread : at.spread_b) spread = (forth * spread * forth.transpose()).eval();
+  for (Eigen::MatrixXd& spread : at.spread_a) spread = ((back.transpose() * spread).eval() * back).eval();
+  for (Eigen::MatrixXd& spread : at.spread_b) spread = ((forth * spread).eval() * forth.transpose()).eval();
 }
 
 // A, t; then v and g from the expected squares.

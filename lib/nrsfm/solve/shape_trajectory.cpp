@@ -148,8 +148,8 @@ Eliminated one_by_one(const Factored& at, const Eigen::VectorXd& w) {
     point.gradient_left.col(k) = u;
     point.gradient_right.col(k) = right;
     const Eigen::MatrixXd inside = at.q.transpose() * m;
-    point.lever[static_cast<std::size_t>(k)] = product * inside * over;
-    product = (product - product * inside * over * inside.transpose()).eval();
+    point.lever[static_cast<std::size_t>(k)] = (product * inside).eval() * over;
+    product -= (point.lever[static_cast<std::size_t>(k)] * inside.transpose()).eval();
     point.chain[static_cast<std::size_t>(k)] = Eigen::MatrixXd::Identity(columns, columns) - product;
   }
   return point;
@@ -215,7 +215,7 @@ Eigen::MatrixXd projected_slopes(const ShapeTrajectoryProblem& problem, const El
   Eigen::MatrixXd by_frame = Eigen::MatrixXd::Zero(columns * unknowns, frames);
   for (Eigen::Index f = 0; f < frames; ++f) {
     if (!problem.visible(f, p)) continue;
-    const Eigen::Matrix2Xd seen = problem.rows.middleRows<2>(2 * f) * s * slopes[static_cast<std::size_t>(f)];
+    const Eigen::Matrix2Xd seen = (problem.rows.middleRows<2>(2 * f) * s).eval() * slopes[static_cast<std::size_t>(f)];
     by_frame.col(f) = (q.middleRows<2>(2 * f).transpose() * seen).reshaped();
   }
   return problem.omega.transpose() * by_frame.transpose();
@@ -278,13 +278,13 @@ Normal normal_of(const ShapeTrajectoryProblem& problem, const State& state) {
   for (Eigen::Index f = 0; f < frames; ++f) {
     const Eigen::MatrixXd& slope = slopes[static_cast<std::size_t>(f)];
     const Eigen::MatrixXd b = first.col(f).reshaped(terms, terms);
-    inner.row(f) = (slope.transpose() * b * slope).reshaped().transpose();
+    inner.row(f) = ((slope.transpose() * b).eval() * slope).reshaped().transpose();
     gradient_x.row(f) = gradient_c.row(f) * slope;
   }
   for (Eigen::Index j = 0; j < q; ++j) {
     for (Eigen::Index l = 0; l <= j; ++l) {
       auto block = normal.matrix.block(j * d, l * d, d, d);
-      block.noalias() += problem.omega.transpose() * inner.col(l * q + j).asDiagonal() * problem.omega;
+      block.noalias() += (problem.omega.transpose() * inner.col(l * q + j).asDiagonal()).eval() * problem.omega;
       if (l != j) normal.matrix.block(l * d, j * d, d, d) = block.transpose();
     }
     normal.gradient.segment(j * d, d) = problem.omega.transpose() * gradient_x.col(j);

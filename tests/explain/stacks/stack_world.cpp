@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <random>
 
 #include "geom/vector.h"
@@ -20,13 +21,25 @@ std::string number(double v) {
 }
 
 // Sum of a patchwork and two waves in the logarithm of radiance, about two and a half decades.
-double scene_log(int x, int y, int channel, const ExposureWorld& world) {
-  std::mt19937_64 patch(world.seed * 7919 + static_cast<std::uint64_t>(x / 9 + 64 * (y / 9)) * 31 +
-                        static_cast<std::uint64_t>(channel) * 0);
-  const double of_patch = std::uniform_real_distribution<double>(-2.4, 2.4)(patch);
-  const double hue = 0.3 * channel * std::sin(0.07 * x + 1.3 * channel);
-  return of_patch + 0.4 * std::sin(0.11 * x) + 0.4 * std::cos(0.13 * y) + hue;
-}
+class SceneLog {
+ public:
+  explicit SceneLog(const ExposureWorld& world) : across_((world.width - 1) / 9 + 1) {
+    for (int v = 0; v <= (world.height - 1) / 9; ++v)
+      for (int u = 0; u < across_; ++u) {
+        std::mt19937_64 patch(world.seed * 7919 + static_cast<std::uint64_t>(u + 64 * v) * 31);
+        patches_.push_back(std::uniform_real_distribution<double>(-2.4, 2.4)(patch));
+      }
+  }
+  double operator()(int x, int y, int channel) const {
+    const double hue = 0.3 * channel * std::sin(0.07 * x + 1.3 * channel);
+    return patches_[static_cast<std::size_t>(y / 9 * across_ + x / 9)] + 0.4 * std::sin(0.11 * x) +
+           0.4 * std::cos(0.13 * y) + hue;
+  }
+
+ private:
+  int across_;
+  std::vector<double> patches_;
+};
 
 void write(const std::filesystem::path& path, const io::Image& image, int bits) {
   if (bits > 0)
@@ -80,6 +93,24 @@ double through_lens(double radius, std::size_t picture, const ExposureWorld& wor
   return share * passed_rim / started;
 }
 
+// The same by tenths of a pixel from the centre to the corner, for as long as pictures have the same lens.
+const std::vector<double>& by_radius(std::size_t picture, const ExposureWorld& world) {
+  const bool lens = !world.f_numbers.empty();
+  const std::vector<double> key = {static_cast<double>(world.width),
+                                   static_cast<double>(world.height),
+                                   lens ? world.f_numbers[picture] : 0,
+                                   lens ? std::ranges::min(world.f_numbers) : 0,
+                                   world.stopped_down,
+                                   world.rim,
+                                   world.rim_shift};
+  static std::map<std::vector<double>, std::vector<double>> known;
+  std::vector<double>& all = known[key];
+  if (all.empty())
+    for (int r = 0; r <= static_cast<int>(5 * std::hypot(world.width, world.height)); ++r)
+      all.push_back(through_lens((r + 0.5) / 5 / world.width, picture, world));
+  return all;
+}
+
 }  // namespace
 
 manifest::Document record(const ExposureWorld& world, const std::filesystem::path& folder) {
@@ -89,19 +120,18 @@ manifest::Document record(const ExposureWorld& world, const std::filesystem::pat
   std::string files, images;
   // The middle of the scene is at a fifth of full scale in the middle exposure.
   const double scale = 0.2 / world.exposures_s[world.exposures_s.size() / 2];
+  const SceneLog scene_log(world);
   for (std::size_t g = 0; g < world.exposures_s.size(); ++g) {
     std::mt19937_64 random(world.seed * 1000003 + g);
     io::Image picture(world.width, world.height, names);
     const double open_s =
         (world.exposures_s[g] + world.extra_s) * (1 + (world.longer.empty() ? 0 : world.longer.at(g)));
     io::Image light(world.width, world.height, names);
-    std::vector<double> lens;  // by tenths of a pixel from the centre
-    for (int r = 0; r < 10 * (world.width + world.height); ++r)
-      lens.push_back(through_lens((r + 0.5) / 5 / world.width, g, world));
+    const std::vector<double>& lens = by_radius(g, world);
     for (int y = 0; y < world.height; ++y)
       for (int x = 0; x < world.width; ++x)
         for (int c = 0; c < world.channels; ++c) {
-          double scene = std::exp(scene_log(x, y, c, world)) * passed(x, y, world);
+          double scene = std::exp(scene_log(x, y, c)) * passed(x, y, world);
           for (const ExposureWorld::Passer& p : world.passers)
             if (p.picture == g && std::hypot(x - p.x, y - p.y) < p.radius) scene = p.light;
           const double from_centre = std::hypot(x + 0.5 - 0.5 * world.width, y + 0.5 - 0.5 * world.height);
