@@ -43,9 +43,6 @@ class PointSurface {
   double spacing_m_ = 0, noise_ratio_ = 1;
 };
 
-// Along a unit direction, of a covariance xx, xy, xz, yy, yz, zz.
-double variance_along(const std::array<double, 6>& covariance, Vec3 direction);
-
 // Unit normal of the least-squares plane through `members`; which of both sides is open.
 Vec3 normal_of_plane(const PointTree& points, const std::vector<PointTree::Neighbour>& members);
 

@@ -11,16 +11,19 @@
 namespace gonio::mesh {
 namespace {
 
-// Of sum of squares over count by patches: variance of a ratio of sums.
+// Of sum of squares over count by patches: variance of a ratio of sums. Few patches know their own scatter badly; as
+// much is added as makes 1.96 standard deviations hold what Student's t holds.
 double ratio_variance(const std::map<Patch, std::pair<double, double>>& patches, double mean, double count) {
   const auto n = static_cast<double>(patches.size());
   if (n < 2) return mean * mean;
-  double sum = 0;
+  double sum = 0, weights = 0;
   for (const auto& [at, patch] : patches) {
     const double off = patch.first - mean * patch.second;
-    sum += off * off;
+    sum += off * off, weights += patch.second * patch.second;
   }
-  return n / (n - 1) * sum / (count * count);
+  const double equal = count * count / weights;  // patches of one weight that would say as much
+  const double wider = stats::student_quantile(0.975, std::max(1.0, equal - 1)) / stats::normal_quantile(0.975);
+  return wider * wider * n / (n - 1) * sum / (count * count);
 }
 
 // P(F > value).

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "geom/covariance.h"
 #include "mesh/clean/local_quadratic.h"
 #include "mesh/reconstruct/point_surface.h"
 #include "stats/intervals.h"

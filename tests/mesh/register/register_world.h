@@ -1,5 +1,6 @@
 // Views of things whose overlaps hold a motion, or do not, by tests/mesh/seen_world.h.
 #pragma once
+#include "geom/covariance.h"
 #include "mesh/register.h"
 #include "mesh/seen_world.h"
 #include "mesh/shapes.h"
@@ -14,7 +15,9 @@ inline io::TriangleMesh free_form() {
   });
 }
 inline io::TriangleMesh flat() {
-  return mesh::shapes::grid(2, 2, false, [](double u, double v) { return Vec3{0.14 * (v - 0.5), 0.14 * (0.5 - u), 0}; });
+  return mesh::shapes::grid(2, 2, false, [](double u, double v) {
+    return Vec3{0.14 * (v - 0.5), 0.14 * (0.5 - u), 0};
+  });
 }
 // About the y axis, towards +z; `lean`: how its radius grows along y.
 inline io::TriangleMesh round_about_y(double radius_m, double lean) {
@@ -45,9 +48,7 @@ inline void misplace(mesh::MeasuredPoints& points, std::uint32_t view, const mes
   for (std::size_t i = 0; i < points.view.size(); ++i) {
     if (points.view[i] != view) continue;
     points.positions_m[i] = error * points.positions_m[i];
-    std::array<double, 6>& c = points.covariance_m2[i];
-    const Mat3 v = r * Mat3{{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]}} * transposed(r);
-    c = {v(0, 0), v(0, 1), v(0, 2), v(1, 1), v(1, 2), v(2, 2)};
+    points.covariance_m2[i] = turned_covariance(r, points.covariance_m2[i]);
   }
   for (Vec3& from : points.viewpoints_m[view]) from = error * from;
 }
