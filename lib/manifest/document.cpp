@@ -43,6 +43,7 @@
 #include "manifest/sections/projection.h"
 #include "manifest/sections/provenance.h"
 #include "manifest/sections/reconstruction.h"
+#include "manifest/sections/registration.h"
 #include "manifest/sections/relief.h"
 #include "manifest/sections/rendering.h"
 #include "manifest/sections/rig.h"
@@ -86,6 +87,7 @@ void for_each_section(D& d, const Visit& visit) {
   visit("patterns", d.patterns);
   visit("projections", d.projections);
   visit("clouds", d.clouds);
+  visit("registration", d.registration);
   visit("contrasts", d.contrasts);
   visit("reliefs", d.reliefs);
   visit("ground_noises", d.ground_noises);

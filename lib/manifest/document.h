@@ -55,6 +55,7 @@ struct Document {
   std::map<std::string, Pattern> patterns;
   std::map<std::string, Projection> projections;
   std::map<std::string, Cloud> clouds;
+  AtMostOne<Registration> registration;
   std::vector<Contrast> contrasts;
   std::map<std::string, ReliefMap> reliefs;
   std::map<std::string, GroundNoiseFit> ground_noises;

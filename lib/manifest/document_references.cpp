@@ -27,6 +27,7 @@
 #include "manifest/sections/plan.h"
 #include "manifest/sections/projection.h"
 #include "manifest/sections/reconstruction.h"
+#include "manifest/sections/registration.h"
 #include "manifest/sections/relief.h"
 #include "manifest/sections/rendering.h"
 #include "manifest/sections/rig.h"
@@ -330,6 +331,13 @@ void check_scans(const Document& d) {
     must_exist(d.projections, "projections", cloud.projection, at + "/projection");
     for (const std::string& camera : cloud.cameras) must_exist(d.cameras, "cameras", camera, at + "/cameras");
     if (cloud.shape) must_exist(d.meshes, "meshes", cloud.shape->mesh, at + "/shape/mesh");
+  }
+  for (const Registration& registration : d.registration.entry) {
+    const std::string at = place(d, "/registration");
+    must_exist(d.clouds, "clouds", registration.fixed, at + "/fixed");
+    for (const RegisteredPair& pair : registration.pairs)
+      for (const std::string& cloud : pair.clouds) must_exist(d.clouds, "clouds", cloud, at + "/pairs");
+    for (const RegisteredView& view : registration.views) must_exist(d.clouds, "clouds", view.cloud, at + "/views");
   }
 }
 

@@ -125,6 +125,14 @@ void add_results(List& all) {
       part("projections: frames", "Pictures, in the order in which they are shown.", projected_frame_fields()));
   all.push_back(keyed("clouds", "Written by structured-light: points that were measured.", cloud_fields()));
   all.push_back(part("clouds: shape", "What is known of the thing that was measured.", known_shape_fields()));
+  Described registration =
+      part("registration", "Written by cloud-register: whether views agree, and how they were moved.",
+           registration_fields());
+  registration.section = "registration";
+  registration.section_schema = Codec<Registration>::schema();
+  all.push_back(std::move(registration));
+  all.push_back(part("registration: pairs", "Two views whose surfaces overlap.", registered_pair_fields()));
+  all.push_back(part("registration: views", "Left out where nothing was to be moved.", registered_view_fields()));
   all.push_back(listed("renderings", "Written by render.", rendering_fields()));
   all.push_back(listed("comparisons", "Written by compare.", comparison_fields()));
   all.push_back(keyed("mountings", "Written by handeye. What is fixed to a robot's tool or stands in its world.",

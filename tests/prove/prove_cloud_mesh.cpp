@@ -4,16 +4,16 @@
 //   prove-cloud-mesh BUNNY.obj   prints one claim a line
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
 #include "base/text.h"
 #include "mesh/adjacency.h"
+#include "mesh/obj_file.h"
 #include "mesh/seen_world.h"
 
 namespace {
 
 using namespace gonio;
+using tests::read_obj;
 using tests::SeenFrom;
 
 constexpr double touch_m = 1e-3;  // a part that comes as near as this to both things has joined them
@@ -23,30 +23,6 @@ struct World {
   std::vector<io::TriangleMesh> things;  // each in one piece
   std::vector<SeenFrom> views;
 };
-
-io::TriangleMesh read_obj(const char* path) {
-  io::TriangleMesh mesh;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    words >> kind;
-    if (kind == "v") {
-      Vec3 p;
-      words >> p.x >> p.y >> p.z;
-      mesh.positions_m.push_back(p);
-    } else if (kind == "f") {
-      std::array<std::uint32_t, 3> t{};
-      for (std::uint32_t& corner : t) {
-        std::string word;
-        words >> word;
-        corner = static_cast<std::uint32_t>(std::stoul(word)) - 1;
-      }
-      mesh.triangles.push_back(t);
-    }
-  }
-  return mesh;
-}
 
 template <class Position>
 io::TriangleMesh sheet(int across, int down, const Position& position) {

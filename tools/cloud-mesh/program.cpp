@@ -1,12 +1,10 @@
 // cloud-mesh: one triangle mesh of measured clouds, which states its own error (lib/mesh/reconstruct).
 #include "cli/program.h"
 
-#include <charconv>
-#include <cmath>
-
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "cli/viewpoints.h"
 #include "mesh/reconstruct/cloud_document.h"
 
 namespace gonio::tools::cloud_mesh {
@@ -14,28 +12,10 @@ namespace {
 
 using cli::Type;
 
-// "front=0.1,0,-0.6"
-std::pair<std::string, Vec3> viewpoint_of(const std::string& text) {
-  const std::size_t equals = text.rfind('=');
-  std::array<double, 3> at{};
-  bool good = equals != std::string::npos && equals > 0;
-  const char *next = text.data() + (good ? equals + 1 : text.size()), *const end = text.data() + text.size();
-  for (std::size_t k = 0; k < at.size() && good; ++k) {
-    const auto [after, problem] = std::from_chars(next, end, at[k]);
-    good = problem == std::errc() && std::isfinite(at[k]) && (k == 2 ? after == end : after != end && *after == ',');
-    next = after + 1;
-  }
-  if (!good)
-    throw Error(Exit::usage, "--viewpoint", "\"" + text + "\" is no viewpoint", "VIEW=X,Y,Z in metres: front=0,0,-0.6");
-  return {text.substr(0, equals), {at[0], at[1], at[2]}};
-}
-
 mesh::CloudMeshRequest request_of(cli::Invocation& call) {
   mesh::CloudMeshRequest request;
   request.clouds = call.texts("view");
-  for (const std::string& text : call.texts("viewpoint"))
-    if (!request.viewpoints_m.insert(viewpoint_of(text)).second)
-      throw Error(Exit::usage, "--viewpoint", "\"" + text + "\" is the second one of its view", "state one");
+  request.viewpoints_m = cli::viewpoints_m(call);
   request.name = call.text("name");
   request.wish.chain = call.text("chain") == "thesis" ? mesh::Chain::thesis : mesh::Chain::gonio;
   request.wish.depth = static_cast<int>(call.integer("depth"));
@@ -72,7 +52,7 @@ Exit run(cli::Invocation& call) {
                                 1e3 * made.rms_m, made.whitened, limit,
                                 made.noise_ratio > limit
                                     ? ": neighbouring points contradict each other already, views do not fit together "
-                                      "or points state too little"
+                                      "or points state too little; cloud-register says which"
                                     : ": it is smoother than what they show; a greater --depth, or --chain gonio"));
   return Exit::quality;
 }
@@ -84,12 +64,7 @@ std::vector<cli::Option> options() {
        .help = "Cloud to take; may be repeated. Left out: all.",
        .metavar = "NAME",
        .repeat = true},
-      {.name = "viewpoint",
-       .type = Type::text,
-       .help = "Where the camera of a cloud stood, in the frame of its points, in metres; instead of what images and "
-               "rigs say.",
-       .metavar = "NAME=X,Y,Z",
-       .repeat = true},
+      cli::viewpoint_option(),
       {.name = "name", .type = Type::text, .help = "Of the mesh.", .metavar = "NAME", .preset = "mesh"},
       {.name = "chain",
        .type = Type::choice,
@@ -161,7 +136,8 @@ const cli::Program& gonio_program() {
            "Goldenshluger & Nemirovski, On spatially adaptive estimation of nonparametric regression, Mathematical "
            "Methods of Statistics 6, 1997.",
            "Curless & Levoy, A volumetric method for building complex models from range images, SIGGRAPH 1996."},
-      .see_also = {"structured-light(1)", "reassemble(1)", "render(1)", "gonio-conventions(7)", "gonio-manifest(5)"},
+      .see_also = {"structured-light(1)", "cloud-register(1)", "reassemble(1)", "render(1)", "gonio-conventions(7)",
+                   "gonio-manifest(5)"},
       .check = check,
       .run = run};
   return program;

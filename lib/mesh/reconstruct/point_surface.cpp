@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "geom/covariance.h"
 #include "linear/symmetric_eigen.h"
 #include "mesh/clean/local_quadratic.h"
 #include "stats/intervals.h"
@@ -106,9 +107,8 @@ PointSurface::PointSurface(const MeasuredPoints& points, const PointTree& tree)
   if (!left.empty()) noise_ratio_ = std::sqrt(std::max(1.0, stats::median(left)));
 }
 
-double PointSurface::variance_m2(std::uint32_t point, Vec3 n) const {
-  const std::array<double, 6>& c = points_.covariance_m2[point];
-  return n.x * (c[0] * n.x + 2 * c[1] * n.y + 2 * c[2] * n.z) + n.y * (c[3] * n.y + 2 * c[4] * n.z) + c[5] * n.z * n.z;
+double PointSurface::variance_m2(std::uint32_t point, Vec3 direction) const {
+  return variance_along(points_.covariance_m2[point], direction);
 }
 
 Vec3 PointSurface::towards_camera(std::uint32_t point) const {

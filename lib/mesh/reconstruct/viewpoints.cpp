@@ -39,13 +39,11 @@ std::optional<std::vector<RigFromCamera>> in_rig(const Document& document, const
   return std::nullopt;
 }
 
-// As structured-light names clouds: by the group of the images, else by their projection.
 std::optional<Rigid<frame::World, frame::Camera>> pose_of(const Document& document, const std::string& name,
                                                           const manifest::Cloud& cloud) {
-  for (const manifest::ImageEntry& image : document.images) {
-    if (image.camera != cloud.cameras.front() || !image.world_from_camera) continue;
-    if (!cloud.projection.empty() && image.projection != cloud.projection) continue;
-    if ((image.group.empty() ? image.projection : image.group) == name) return *image.world_from_camera;
+  for (const std::size_t i : images_of_cloud(document, name)) {
+    const manifest::ImageEntry& image = document.images[i];
+    if (image.camera == cloud.cameras.front() && image.world_from_camera) return *image.world_from_camera;
   }
   return std::nullopt;
 }
@@ -80,6 +78,18 @@ Seen seen(const Document& document, const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> images_of_cloud(const Document& document, const std::string& cloud) {
+  const manifest::Cloud& own = document.clouds.at(cloud);
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < document.images.size(); ++i) {
+    const manifest::ImageEntry& image = document.images[i];
+    if (std::ranges::find(own.cameras, image.camera) == own.cameras.end()) continue;
+    if (!own.projection.empty() && image.projection != own.projection) continue;
+    if ((image.group.empty() ? image.projection : image.group) == cloud) found.push_back(i);
+  }
+  return found;
+}
 
 std::vector<std::vector<Vec3>> viewpoints_of(const Document& document, const std::vector<std::string>& clouds,
                                              const std::map<std::string, Vec3>& stated) {

@@ -15,4 +15,8 @@ namespace gonio::mesh {
 std::vector<std::vector<Vec3>> viewpoints_of(const manifest::Document& document, const std::vector<std::string>& clouds,
                                              const std::map<std::string, Vec3>& stated);
 
+// Places in document.images of what the cloud was made of: as structured-light names clouds, by the group of the
+// images, else by their projection.
+std::vector<std::size_t> images_of_cloud(const manifest::Document& document, const std::string& cloud);
+
 }  // namespace gonio::mesh
