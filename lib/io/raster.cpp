@@ -1,5 +1,6 @@
-// 8 and 16-bit pictures by OpenCV's codecs, TGA by io/tga.h. IMREAD_UNCHANGED: neither the camera's orientation tag nor
-// a colour profile is applied, so that a pixel keeps the place and the code that the sensor gave it.
+// 8 and 16-bit pictures by OpenCV's codecs, TGA by io/tga.h, PNG of grey bytes by io/png_grey.h. IMREAD_UNCHANGED:
+// neither the camera's orientation tag nor a colour profile is applied, so that a pixel keeps the place and the code
+// that the sensor gave it.
 #include "io/raster.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "base/error.h"
 #include "io/opencv_codecs.h"
+#include "io/png_grey.h"
 #include "io/raster_header.h"
 #include "io/tga.h"
 
@@ -96,6 +98,10 @@ GreyImage decode_grey(const std::string& bytes, const std::string& place) {
   check_decoded_size(header.width, header.height, 3 * sizeof(float), bytes.size(), place);
   if (header.kind == RasterKind::tga) return grey_of_codes(decode_tga(bytes, place));
   GreyImage grey{static_cast<int>(header.width), static_cast<int>(header.height), {}, {}};
+  if (auto own = decode_png_of_grey_bytes(bytes, header)) {
+    grey.bytes = std::move(*own);
+    return grey;
+  }
   grey.bytes.resize(header.width * header.height);
   cv::Mat picture(grey.height, grey.width, CV_8U, grey.bytes.data());  // filled in place where the file has 8 bits
   decode(bytes, place, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION, picture);

@@ -4,11 +4,11 @@
 // beforehand.
 #include "io/raster_header.h"
 
-#include <array>
 #include <optional>
 
 #include "base/error.h"
 #include "io/bmp.h"
+#include "io/png_grey.h"
 #include "io/tga.h"
 
 namespace gonio::io {
@@ -47,36 +47,6 @@ class Reader {
   const std::string& place_;
 };
 
-// Eight bytes at a step: table k moves a byte k bytes further (Kounavis & Berry, "slicing-by-8", 2005).
-constexpr auto crc_tables = [] {
-  std::array<std::array<std::uint32_t, 256>, 8> tables{};
-  for (std::uint32_t n = 0; n < 256; ++n) {
-    std::uint32_t c = n;
-    for (int bit = 0; bit < 8; ++bit) c = (c & 1) ? 0xedb88320u ^ (c >> 1) : c >> 1;
-    tables[0][n] = c;
-  }
-  for (std::size_t k = 1; k < 8; ++k) {
-    for (std::uint32_t n = 0; n < 256; ++n) {
-      tables[k][n] = tables[0][tables[k - 1][n] & 255] ^ (tables[k - 1][n] >> 8);
-    }
-  }
-  return tables;
-}();
-
-std::uint32_t crc32(std::string_view bytes) {
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[i])); };
-  std::uint32_t c = 0xffffffffu;
-  std::size_t i = 0;
-  for (; i + 8 <= bytes.size(); i += 8) {
-    c ^= byte(i) | byte(i + 1) << 8 | byte(i + 2) << 16 | byte(i + 3) << 24;
-    c = crc_tables[7][c & 255] ^ crc_tables[6][(c >> 8) & 255] ^ crc_tables[5][(c >> 16) & 255] ^
-        crc_tables[4][c >> 24] ^ crc_tables[3][byte(i + 4)] ^ crc_tables[2][byte(i + 5)] ^ crc_tables[1][byte(i + 6)] ^
-        crc_tables[0][byte(i + 7)];
-  }
-  for (; i < bytes.size(); ++i) c = crc_tables[0][(c ^ byte(i)) & 255] ^ (c >> 8);
-  return c ^ 0xffffffffu;
-}
-
 // Chunks: length, type, data, CRC-32 over type and data; the first is IHDR, the last IEND.
 RasterHeader png(std::string_view bytes, const std::string& place) {
   const Reader read(bytes, place);
@@ -85,7 +55,7 @@ RasterHeader png(std::string_view bytes, const std::string& place) {
     const std::uint64_t length = read.big(at, 4);
     if (length > bytes.size() || at + length + 12 > bytes.size()) refuse(place, "the PNG file is cut off");
     const std::string_view body = bytes.substr(at + 4, length + 4);
-    if (read.big(at + 8 + length, 4) != crc32(body))
+    if (read.big(at + 8 + length, 4) != crc32_of(body))
       refuse(place, "the PNG file is damaged at byte " + std::to_string(at));
     if (body.starts_with("IEND")) break;
     at += length + 12;

@@ -122,13 +122,13 @@ class CosineDecoder {
     if (codes_.whole) return;  // the Gray code's
     const ShiftSums &a = all.front(), &b = all.back();
     const auto na = static_cast<float>(a.shifts_rad.size()), nb = static_cast<float>(b.shifts_rad.size());
-    std::vector<float> mean(a.of_all.size()), left(mean.size());
-    for (std::size_t i = 0; i < mean.size(); ++i) {
-      mean[i] = a.of_all[i] / na;
-      left[i] = all.size() > 1 ? mean[i] - b.of_all[i] / nb : mean[i];
-      if (a.spoiled[i] != 0 || b.spoiled[i] != 0) left[i] = std::numeric_limits<float>::quiet_NaN();
-    }
-    const double unit = std::sqrt(1 / na + (all.size() > 1 ? 1 / nb : 0));
+    const bool several = all.size() > 1;
+    const auto mean = [&](std::size_t i) { return a.of_all[i] / na; };
+    const auto left = [&](std::size_t i) {
+      if (a.spoiled[i] != 0 || b.spoiled[i] != 0) return std::numeric_limits<float>::quiet_NaN();
+      return several ? mean(i) - b.of_all[i] / nb : mean(i);
+    };
+    const double unit = std::sqrt(1 / na + (several ? 1 / nb : 0));
     std::vector<Contradiction> found = between_neighbours(left, unit, mean, codes_.width, codes_.height);
     codes_.noise = noise_of(std::move(found));
   }

@@ -34,16 +34,16 @@ manifest::Noise noise_of(std::vector<Contradiction> all) {
   return {slope > 0 ? 1 / slope : 0, std::sqrt(level)};
 }
 
-std::vector<Contradiction> between_neighbours(const std::vector<float>& value, double unit,
-                                              const std::vector<float>& light, int width, int height) {
+std::vector<Contradiction> between_neighbours(const ValueOf& value, double unit, const ValueOf& light, int width,
+                                              int height) {
   const auto columns = static_cast<std::size_t>(width);
-  const int stride = std::max(3, static_cast<int>(value.size() / most_contradictions));
+  const int stride = std::max(3, static_cast<int>(columns * static_cast<std::size_t>(height) / most_contradictions));
   const auto scale = static_cast<float>(1 / (unit * std::sqrt(6.0)));
   std::vector<Contradiction> all;
   for (int y = 0; y < height; ++y)
     for (int x = 1 + y % stride; x + 1 < width; x += stride) {
       const std::size_t i = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
-      all.push_back({light[i], scale * (value[i - 1] - 2 * value[i] + value[i + 1])});
+      all.push_back({light(i), scale * (value(i - 1) - 2 * value(i) + value(i + 1))});
     }
   return all;
 }

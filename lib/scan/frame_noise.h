@@ -2,6 +2,8 @@
 // scene sends on to itself: two bits, each together with its inverse; the means over the shifts of two numbers of
 // periods. That light varies slowly over the picture, and second differences along the rows do not see it.
 #pragma once
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "manifest/noise.h"
@@ -19,7 +21,8 @@ manifest::Noise noise_of(std::vector<Contradiction> contradictions);
 
 // Second differences along the rows of `value`, which has `unit` times the noise of a single reading, at some of the
 // pixels; `light` is their brightness. Pixels that are not a number do not count.
-std::vector<Contradiction> between_neighbours(const std::vector<float>& value, double unit,
-                                              const std::vector<float>& light, int width, int height);
+using ValueOf = std::function<float(std::size_t pixel)>;
+std::vector<Contradiction> between_neighbours(const ValueOf& value, double unit, const ValueOf& light, int width,
+                                              int height);
 
 }  // namespace gonio::scan

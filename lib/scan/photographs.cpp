@@ -4,6 +4,8 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/hash.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "camera/picture_names.h"
 #include "manifest/document.h"
@@ -60,9 +62,12 @@ void enter_photographs(const std::vector<std::string>& paths, const std::string&
                   format("is the last of %zu pictures by camera %s, and the projection %s has %zu frames", own.size(),
                          camera.c_str(), projection.c_str(), frames),
                   "give every frame once, or write a manifest whose images say what they show");
-    for (std::size_t f = 0; f < frames; ++f) {
+    parallel_for(0, frames, [&own](std::size_t f) {
       if (!std::filesystem::is_regular_file(own[f]))
         throw Error(Exit::no_input, own[f], "is no file", "give the pictures of the sequence");
+      (void)sha256_of_file(own[f]);  // side by side; add_file() asks again
+    });
+    for (std::size_t f = 0; f < frames; ++f) {
       manifest::ImageEntry image;
       const std::string id = camera + "-" + std::filesystem::path(own[f]).stem().string();
       image.id = id;

@@ -1,14 +1,12 @@
 // See triangulate.h.
 #include "scan/triangulate.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "base/parallel.h"
 #include "geom/mat3_inverse.h"
-#include "linear/symmetric_eigen.h"
 #include "scan/code_places.h"
 #include "stats/intervals.h"
 
@@ -32,11 +30,16 @@ struct Solved {
   double chi_square = -1;
 };
 
+// Of the largest eigenvalue of v, m + 2 p cos(phi / 3), cos(phi) = det((v - m) / p) / 2, m a third of the trace
+// (Smith 1961).
 double largest_sigma(const std::array<double, 6>& c) {
-  Eigen::Matrix3d v;
-  v << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-  const linear::SymmetricEigen<Eigen::Matrix3d> own(v, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, own.eigenvalues()[2]));
+  const double m = (c[0] + c[3] + c[5]) / 3, xx = c[0] - m, yy = c[3] - m, zz = c[5] - m;
+  const double p = std::sqrt((xx * xx + yy * yy + zz * zz + 2 * (c[1] * c[1] + c[2] * c[2] + c[4] * c[4])) / 6);
+  if (!(p > 0)) return std::sqrt(std::max(0.0, m));
+  const double determinant =
+                   xx * (yy * zz - c[4] * c[4]) - c[1] * (c[1] * zz - c[4] * c[2]) + c[2] * (c[1] * c[4] - yy * c[2]),
+               cosine = std::clamp(determinant / (2 * p * p * p), -1.0, 1.0);
+  return std::sqrt(std::max(0.0, m + 2 * p * std::cos(std::acos(cosine) / 3)));
 }
 
 // Joins what was found side by side, in order, and says by how much variances were too small.
