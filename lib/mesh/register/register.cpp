@@ -77,9 +77,9 @@ double largest_motion_m(const Adjustment& made) {
 std::string doubt_about(const Adjustment& made, const Registration& found, double most) {
   const double reach_m = found.reach_m;
   if (!made.converged) return format("it did not settle in %d steps", made.iterations);
-  if (const double most = largest_motion_m(made); most > 3 * reach_m)
+  if (const double moved = largest_motion_m(made); moved > 3 * reach_m)
     return format("a view would move by %.3g mm, and pairs reach %.3g mm: views lie too far apart to begin with",
-                  1e3 * most, 1e3 * reach_m);
+                  1e3 * moved, 1e3 * reach_m);
   if (static_cast<double>(found.after.residuals) < fewest_left * static_cast<double>(found.before.residuals))
     return format("of %zu pairs only %zu were left", found.before.residuals, found.after.residuals);
   if (found.after.typical > most)
