@@ -41,6 +41,7 @@ struct RegisterWish {
   bool hold = false;           // move in the directions that overlaps hold, where there are others, too
   std::size_t fixed = 0;       // the view that stays
   double limit_m = 1e-4;       // a direction is held where the points' motion along it is known to this
+  double most = 2;             // times what is stated: views that would still lie farther apart are not moved
   double reach_m = 0;          // of pairs; 0: eight spacings and six standard deviations
   std::size_t samples = 6000;  // of each view, asked for their distance from the others
   std::uint64_t seed = 0;      // of the samples

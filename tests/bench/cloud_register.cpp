@@ -3,65 +3,20 @@
 // prints, of bumps, of half as much overlap, and of the bunny, the root mean square over COUNT worlds of how far points
 // lie from where they belong once views are registered, and the seconds: ours, PCL's generalized ICP, PCL's ICP with
 // normals.
-#include <pcl/features/normal_3d.h>
-#include <pcl/point_types.h>
-#include <pcl/registration/gicp.h>
-#include <pcl/registration/icp.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
+#include "bench/registration/pcl_peers.h"
 #include "mesh/obj_file.h"
 #include "mesh/register/register_world.h"
-#include "stats/intervals.h"
 
 namespace {
 
 using namespace gonio;
-using Cloud = pcl::PointCloud<pcl::PointXYZ>;
-using NormalCloud = pcl::PointCloud<pcl::PointNormal>;
 
 constexpr double reach_m = 0.012;  // of pairs, for all three
-
-Cloud::Ptr cloud_of(const mesh::MeasuredPoints& points, std::uint32_t view) {
-  Cloud::Ptr cloud(new Cloud);
-  for (std::size_t i = 0; i < points.view.size(); ++i) {
-    const Vec3 p = points.positions_m[i];
-    if (points.view[i] == view)
-      cloud->push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-  }
-  return cloud;
-}
-
-NormalCloud::Ptr with_normals(const Cloud::Ptr& cloud, Vec3 camera) {
-  pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
-  estimation.setInputCloud(cloud);
-  estimation.setKSearch(28);
-  estimation.setViewPoint(static_cast<float>(camera.x), static_cast<float>(camera.y), static_cast<float>(camera.z));
-  pcl::PointCloud<pcl::Normal> normals;
-  estimation.compute(normals);
-  NormalCloud::Ptr both(new NormalCloud);
-  pcl::concatenateFields(*cloud, normals, *both);
-  return both;
-}
-
-template <class Method, class Points>
-mesh::ViewMotion registered(Method& method, const Points& source, const Points& target) {
-  method.setInputSource(source);
-  method.setInputTarget(target);
-  method.setMaxCorrespondenceDistance(reach_m);
-  method.setMaximumIterations(200);
-  method.setTransformationEpsilon(1e-12);
-  typename Points::element_type aligned;
-  method.align(aligned);
-  const Eigen::Matrix4d m = method.getFinalTransformation().template cast<double>();
-  Mat3 r;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) r(i, j) = m(i, j);
-  return {normalized(quaternion_of(r)), {m(0, 3), m(1, 3), m(2, 3)}};
-}
 
 struct Method {
   const char* name;
@@ -97,16 +52,8 @@ void compare(const char* name, const io::TriangleMesh& thing, const tests::SeenV
     timed(methods[0], [&] {
       return mesh::register_views(points, {}, {.refine = true, .limit_m = 1e-2, .reach_m = reach_m}).views[1].motion;
     });
-    const Cloud::Ptr target = cloud_of(points, 0), source = cloud_of(points, 1);
-    timed(methods[1], [&] {
-      pcl::GeneralizedIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> method;
-      return registered(method, source, target);
-    });
-    timed(methods[2], [&] {
-      pcl::IterativeClosestPointWithNormals<pcl::PointNormal, pcl::PointNormal> method;
-      return registered(method, with_normals(source, points.viewpoints_m[1][0]),
-                        with_normals(target, points.viewpoints_m[0][0]));
-    });
+    timed(methods[1], [&] { return bench::by_gicp(points, reach_m); });
+    timed(methods[2], [&] { return bench::by_icp_with_normals(points, reach_m); });
   }
   for (const Method& m : methods)
     std::printf("%-14s %-22s %8.4f mm, %6.2f times ours, %6.2f s\n", name, m.name, 1e3 * std::sqrt(m.squares),

@@ -22,6 +22,7 @@ mesh::CloudRegisterRequest request_of(cli::Invocation& call) {
   request.wish.hold = call.flag("hold");
   request.wish.limit_m = call.number("motion-limit");
   if (call.given("reach")) request.wish.reach_m = call.number("reach");
+  request.wish.most = call.number("limit");
   request.wish.samples = static_cast<std::size_t>(call.integer("samples"));
   request.wish.seed = call.seed;
   if (call.given("html")) request.page = call.text("html");
@@ -52,51 +53,53 @@ Exit run(cli::Invocation& call) {
 }
 
 std::vector<cli::Option> options() {
-  return {{.name = "view",
-           .type = Type::text,
-           .help = "Cloud to take; may be repeated. Left out: all.",
-           .metavar = "NAME",
-           .repeat = true},
-          cli::viewpoint_option(),
-          {.name = "refine",
-           .help = "Find motions of all views but one under which their overlaps agree, and move them. Left out: "
-                   "nothing moves."},
-          {.name = "fixed",
-           .type = Type::text,
-           .help = "The view that stays. Left out: the first.",
-           .metavar = "NAME",
-           .needs = {"refine"}},
-          {.name = "hold",
-           .help = "Move in the directions that overlaps hold where they do not hold all; the others stay as stated.",
-           .needs = {"refine"}},
-          {.name = "motion-limit",
-           .type = Type::quantity,
-           .help = "A direction is held where the overlaps tell motions of points along it to this, one standard "
-                   "deviation.",
-           .preset = "0.1mm",
-           .dimension = Dimension::length,
-           .lower = 1e-9,
-           .upper = 1},
-          {.name = "reach",
-           .type = Type::quantity,
-           .help = "Farther than this apart, a point and a surface are not taken for the same place. Left out: eight "
-                   "times the points' distances and six of their standard deviations.",
-           .dimension = Dimension::length,
-           .lower = 1e-9,
-           .upper = 10},
-          {.name = "samples",
-           .type = Type::integer,
-           .help = "Points of each view that are compared with the others' surfaces.",
-           .preset = "6000",
-           .lower = 100,
-           .upper = 1e7},
-          {.name = "limit",
-           .type = Type::number,
-           .help = "Exit 2 where views lie apart by more than this many times what is stated.",
-           .preset = "2",
-           .lower = 0.1,
-           .upper = 1e6},
-          {.name = "html", .type = Type::output_file, .help = "Write a report page here."}};
+  return {
+      {.name = "view",
+       .type = Type::text,
+       .help = "Cloud to take; may be repeated. Left out: all.",
+       .metavar = "NAME",
+       .repeat = true},
+      cli::viewpoint_option(),
+      {.name = "refine",
+       .help = "Find motions of all views but one under which their overlaps agree, and move them. Left out: "
+               "nothing moves."},
+      {.name = "fixed",
+       .type = Type::text,
+       .help = "The view that stays. Left out: the first.",
+       .metavar = "NAME",
+       .needs = {"refine"}},
+      {.name = "hold",
+       .help = "Move in the directions that overlaps hold where they do not hold all; the others stay as stated.",
+       .needs = {"refine"}},
+      {.name = "motion-limit",
+       .type = Type::quantity,
+       .help = "A direction is held where the overlaps tell motions of points along it to this, one standard "
+               "deviation.",
+       .preset = "0.1mm",
+       .dimension = Dimension::length,
+       .lower = 1e-9,
+       .upper = 1},
+      {.name = "reach",
+       .type = Type::quantity,
+       .help = "Farther than this apart, a point and a surface are not taken for the same place. Left out: eight "
+               "times the points' distances and six of their standard deviations.",
+       .dimension = Dimension::length,
+       .lower = 1e-9,
+       .upper = 10},
+      {.name = "samples",
+       .type = Type::integer,
+       .help = "Points of each view that are compared with the others' surfaces.",
+       .preset = "6000",
+       .lower = 100,
+       .upper = 1e7},
+      {.name = "limit",
+       .type = Type::number,
+       .help = "Exit 2 where views lie apart by more than this many times what is stated; and nothing is moved where "
+               "half of their points still would.",
+       .preset = "2",
+       .lower = 0.1,
+       .upper = 1e6},
+      {.name = "html", .type = Type::output_file, .help = "Write a report page here."}};
 }
 
 }  // namespace

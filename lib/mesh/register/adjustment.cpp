@@ -12,10 +12,11 @@ namespace gonio::mesh {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr double still = 0.03;   // standard deviations of the motions: a smaller step ends the search
-constexpr int jumping = 8;       // steps after which they are halved
-constexpr double width = 3;      // of Huber's loss
-constexpr double by_pose = 0.5;  // share of a direction's information from which on its prior holds it
+constexpr double still = 0.03;         // standard deviations of the motions: a smaller step ends the search
+constexpr int jumping = 8;             // steps after which they are halved
+constexpr double usual_inflation = 4;  // of points that are as dense on both sides, compared both ways
+constexpr double width = 3;            // of Huber's loss
+constexpr double by_pose = 0.5;        // share of a direction's information from which on its prior holds it
 
 ViewMotion motion_of(const Vector6& x, const MotionScale& scale) {
   const Vec3 turn{x[0] / scale.length_m, x[1] / scale.length_m, x[2] / scale.length_m}, shift{x[3], x[4], x[5]};
@@ -153,7 +154,7 @@ Adjustment adjust(const std::vector<ViewSurface>& surfaces, std::vector<ViewOver
   made.motions.resize(surfaces.size());
   made.overlaps = std::move(overlaps);
   made.scale = scale_of(made.overlaps, surfaces);
-  for (bool last = false; made.iterations < most_iterations; ++made.iterations) {
+  for (bool fine = false; made.iterations < most_iterations; ++made.iterations) {
     if (made.iterations > 0) made.overlaps = all_overlaps(surfaces, made.motions, reach_m);
     weigh(made.overlaps, width);
     const std::vector<PairSums> pairs = sums_of(made.overlaps, made.scale);
@@ -166,15 +167,18 @@ Adjustment adjust(const std::vector<ViewSurface>& surfaces, std::vector<ViewOver
     each_moved([&](std::size_t v, int at) { so_far.segment<6>(at) = unknowns_of(made.motions[v], made.scale); });
     const Eigen::MatrixXd prior = prior_of(made.system, doubts, wish.fixed, made.scale);
     const Filled filled = filled_directions(made.system);
-    Eigen::MatrixXd scatter = seen_scatter(pairs, made.system, filled);
-    if (last) scatter = final_scatter(surfaces, made, filled, scatter);
+    // As long as views lie apart, what they show is not noise.
+    const Eigen::MatrixXd scatter =
+        fine ? final_scatter(surfaces, made, filled, seen_scatter(pairs, made.system, filled))
+             : Eigen::MatrixXd(usual_inflation * made.system.raw);
     Step step = step_of(made.system, filled, scatter, prior, so_far, wish.limit_m);
     made.covariance = step.covariance, made.open = step.open, made.inflation = step.inflation;
-    made.converged = last && step.sigmas <= 3 * still;
-    if (last) break;
-    last = step.sigmas <= still || made.iterations + 2 == most_iterations;
     // Pairs that come and go let steps jump to and fro.
-    if (made.iterations >= jumping) step.x *= 0.5;
+    const bool jumps = made.iterations >= jumping;
+    made.converged = fine && step.sigmas <= (jumps ? 3 : 1) * still;
+    if (made.converged) break;
+    fine = fine || step.sigmas <= still || made.iterations >= most_iterations / 2;
+    if (jumps) step.x *= 0.5;
     each_moved([&](std::size_t v, int) {
       made.motions[v] = motion_of(made.system.motion_of(step.x, v), made.scale) * made.motions[v];
     });

@@ -74,13 +74,19 @@ double largest_motion_m(const Adjustment& made) {
 }
 
 // Why the motions are none, where they are none.
-std::string doubt_about(const Adjustment& made, const Registration& found, double reach_m) {
+std::string doubt_about(const Adjustment& made, const Registration& found, double most) {
+  const double reach_m = found.reach_m;
   if (!made.converged) return format("it did not settle in %d steps", made.iterations);
-  if (const double most = largest_motion_m(made); most > 3 * reach_m)
+  if (const double moved = largest_motion_m(made); moved > 3 * reach_m)
     return format("a view would move by %.3g mm, and pairs reach %.3g mm: views lie too far apart to begin with",
-                  1e3 * most, 1e3 * reach_m);
+                  1e3 * moved, 1e3 * reach_m);
   if (static_cast<double>(found.after.residuals) < fewest_left * static_cast<double>(found.before.residuals))
     return format("of %zu pairs only %zu were left", found.before.residuals, found.after.residuals);
+  if (found.after.typical > most)
+    return format(
+        "views would still lie apart by %.3g times what is stated (middle half, limit %.3g): they lie too far "
+        "apart to begin with, or their points err by more than they state",
+        found.after.typical, most);
   if (found.after.value > found.before.value + 2 * found.after.rest_sigma)
     return format("views agreed worse than before: %.3g times what is stated instead of %.3g", found.after.value,
                   found.before.value);
@@ -117,15 +123,12 @@ Registration register_views(const MeasuredPoints& points, const std::vector<std:
     found.views.back().prior = v < doubts.size() && doubts[v].has_value();
     found.slides = found.slides || !found.views.back().open.empty();
   }
-  found.slides = found.slides && !wish.hold;
-  if (found.slides) {
-    found.refused = "overlaps do not hold every motion";
-    return found;
-  }
   for (ViewOverlap& o : made.overlaps)
     for (OverlapPoint& p : o.points) p.weight = 1;
   found.after = consistency_of(made.overlaps, sums_of(made.overlaps, made.scale), views, wish.fixed);
-  found.refused = doubt_about(made, found, found.reach_m);
+  found.refused = doubt_about(made, found, wish.most);
+  found.slides = found.slides && found.refused.empty() && !wish.hold;
+  if (found.slides) found.refused = "overlaps do not hold every motion";
   if (found.refused.empty())
     describe(made.overlaps, made.scale, found);
   else
