@@ -7,7 +7,7 @@ complete -c cloud-register -l hold -d 'Move in the directions that overlaps hold
 complete -c cloud-register -l motion-limit -x -d 'A direction is held where the overlaps tell motions of points along it to this, one standard deviation.'
 complete -c cloud-register -l reach -x -d 'Farther than this apart, a point and a surface are not taken for the same place. Left out: eight times the points distances and six of their standard deviations.'
 complete -c cloud-register -l samples -x -d 'Points of each view that are compared with the others surfaces.'
-complete -c cloud-register -l limit -x -d 'Exit 2 where views lie apart by more than this many times what is stated.'
+complete -c cloud-register -l limit -x -d 'Exit 2 where views lie apart by more than this many times what is stated; and nothing is moved where half of their points still would.'
 complete -c cloud-register -l html -r -d 'Write a report page here.'
 complete -c cloud-register -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c cloud-register -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'

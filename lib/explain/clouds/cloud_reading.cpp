@@ -47,6 +47,12 @@ bool is_placed(const Document& document, const std::string& name, const manifest
   return !images.empty() && images[0]->world_from_camera.has_value();
 }
 
+bool is_projector(const Document& d, const std::string& camera, const std::string& projection) {
+  return std::ranges::none_of(d.images, [&](const manifest::ImageEntry& image) {
+    return image.camera == camera && image.projection == projection && image.shows;
+  });
+}
+
 ReadCloud read_one(const Document& d, const std::string& name, const manifest::Cloud& cloud,
                    const scan::Station& first) {
   const std::vector<const manifest::ImageEntry*> images = images_of(d, name, cloud);

@@ -15,6 +15,9 @@ namespace gonio::explain {
 // Was it placed in the world by what its images say?
 bool is_placed(const manifest::Document& document, const std::string& name, const manifest::Cloud& cloud);
 
+// A projector has recorded nothing.
+bool is_projector(const manifest::Document& document, const std::string& camera, const std::string& projection);
+
 struct ReadCloud {
   std::vector<scan::ScanPoint> points;  // rig frame
   Rigid<frame::World, frame::Rig> world_from_rig;

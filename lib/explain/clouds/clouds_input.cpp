@@ -10,7 +10,6 @@
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/cloud.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/mesh.h"
 #include "mechanism/mechanism.h"
@@ -101,13 +100,6 @@ class CloudReader {
   std::map<std::string, std::shared_ptr<const ShapeMesh>> meshes_;
   std::vector<ReadCloud> reads_;  // without their points
 };
-
-// A projector has recorded nothing.
-bool is_projector(const Document& d, const std::string& camera, const std::string& projection) {
-  return std::ranges::none_of(d.images, [&](const manifest::ImageEntry& image) {
-    return image.camera == camera && image.projection == projection && image.shows;
-  });
-}
 
 void take_given(const Document& d, CloudsInput& input) {
   for (const auto& [id, use] : d.mechanisms) {

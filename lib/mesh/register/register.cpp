@@ -1,3 +1,4 @@
+// See ../register.h.
 #include "mesh/register.h"
 
 #include <algorithm>
