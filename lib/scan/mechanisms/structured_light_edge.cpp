@@ -16,7 +16,7 @@ const Mechanism& structured_light_edge() {
           "phase turned by arg I(x + i spread_px2 k), I what white adds at the pixel x, continued to complex places, k "
           "the phase's change per pixel; of long periods: lit at x + spread_px2 grad log I(x)",
       .source = "Curless & Levoy 1995 (reflectance changes); Robbins 1956 (mean of what a Gaussian blurred)",
-      .stage = "lens",
+      .stage = "light",
       .target = Target::camera,
       .domains = {"clouds"},
       .parameters = {{.name = "spread_px2",
