@@ -2,6 +2,7 @@
 #include "scan/cloud_file.h"
 
 #include "base/error.h"
+#include "geom/covariance.h"
 #include "io/ply.h"
 
 namespace gonio::scan {
@@ -10,11 +11,6 @@ namespace {
 enum : std::size_t { sigma_at, reprojection_at, x_at, y_at, reflected_at, covariance_at };
 const io::PlyWish columns{.properties = {"sigma", "reprojection_px", "pixel_x", "pixel_y", "reflected", "cov_xx",
                                          "cov_xy", "cov_xz", "cov_yy", "cov_yz", "cov_zz"}};
-
-std::array<double, 6> turned(const Mat3& turn, const std::array<double, 6>& c) {
-  const Mat3 v = turn * Mat3{{c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5]}} * transposed(turn);
-  return {v(0, 0), v(0, 1), v(0, 2), v(1, 1), v(1, 2), v(2, 2)};
-}
 
 }  // namespace
 
@@ -27,7 +23,7 @@ void write_cloud(const std::filesystem::path& path, const Cloud& cloud,
     mesh.positions_m.push_back(world_from_rig * point.position_m);
     const double own[] = {point.sigma_m, point.reprojection_px, point.pixel.x, point.pixel.y, double{point.reflected}};
     for (std::size_t k = 0; k < std::size(own); ++k) mesh.properties[k].push_back(static_cast<float>(own[k]));
-    const std::array<double, 6> v = turned(turn, point.covariance);
+    const std::array<double, 6> v = turned_covariance(turn, point.covariance);
     for (std::size_t k = 0; k < v.size(); ++k) mesh.properties[covariance_at + k].push_back(static_cast<float>(v[k]));
   }
   io::write_ply(path, mesh, columns);
@@ -51,7 +47,7 @@ std::vector<ScanPoint> read_cloud(const std::filesystem::path& path,
     p.pixel = {value(x_at), value(y_at)}, p.reflected = mesh.properties[reflected_at][i];
     std::array<double, 6> v{};
     for (std::size_t k = 0; k < v.size(); ++k) v[k] = value(covariance_at + k);
-    p.covariance = turned(turn, v);
+    p.covariance = turned_covariance(turn, v);
   }
   return points;
 }

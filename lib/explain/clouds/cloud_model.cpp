@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/covariance.h"
 #include "geom/rigid.h"
 #include "scan/mechanisms/structured_light_edge.h"
 #include "scan/mechanisms/structured_light_subsurface.h"
@@ -107,11 +108,8 @@ std::optional<CloudRow> CloudModel::row_of(const CloudView& view, std::size_t po
   if (!(row.px_per_metre > 0) || cosine < least_cosine || other < least_cosine) return std::nullopt;
   row.told = *told, row.expected = *expected, row.along = slope * (1 / row.px_per_metre);
   row.metre_per_px = cosine / row.px_per_metre;
-  const std::array<double, 6>& c = p.covariance;
-  const Vec3 n = met->normal;
-  row.sigma_m = std::sqrt(std::max(least_variance, c[0] * n.x * n.x + c[3] * n.y * n.y + c[5] * n.z * n.z +
-                                                       2 * (c[1] * n.x * n.y + c[2] * n.x * n.z + c[4] * n.y * n.z)));
-  row.across = across(surface, row), row.normal = n;
+  row.sigma_m = std::sqrt(std::max(least_variance, variance_along(p.covariance, met->normal)));
+  row.across = across(surface, row), row.normal = met->normal;
   if (!view.bright.empty() && view.bright[point][12] > 0) {
     const equation::Neighbours& b = view.bright[point];
     row.bright = &b, row.slope = Vec2{b[13] - b[11], b[17] - b[7]} * (0.5 / b[12]);

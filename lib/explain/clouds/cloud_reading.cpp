@@ -7,6 +7,7 @@
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
+#include "mesh/reconstruct/viewpoints.h"
 #include "scan/cloud_file.h"
 #include "stats/intervals.h"
 
@@ -19,10 +20,8 @@ using manifest::Document;
 std::vector<const manifest::ImageEntry*> images_of(const Document& d, const std::string& name,
                                                    const manifest::Cloud& cloud) {
   std::vector<const manifest::ImageEntry*> found;
-  for (const manifest::ImageEntry& image : d.images)
-    if (image.camera == cloud.cameras[0] && image.projection == cloud.projection &&
-        (image.group.empty() ? image.projection : image.group) == name)
-      found.push_back(&image);
+  for (const std::size_t i : mesh::images_of_cloud(d, name))
+    if (d.images[i].camera == cloud.cameras[0]) found.push_back(&d.images[i]);
   return found;
 }
 

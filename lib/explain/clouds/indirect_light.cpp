@@ -18,10 +18,8 @@ constexpr double open = 0.02;   // share of the first paths that meet something,
 constexpr double clear = 1e-6;  // metres above the surface, where a path begins
 
 Vec3 spread_about(Vec3 normal, Vec2 random) {
-  const Vec3 aside = std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 x = normalized(cross(normal, aside)), y = cross(normal, x);
   const double r = std::sqrt(random.x), turn = 2 * pi * random.y;
-  return r * std::cos(turn) * x + r * std::sin(turn) * y + std::sqrt(std::max(0.0, 1 - random.x)) * normal;
+  return Basis(normal).to_world({r * std::cos(turn), r * std::sin(turn), std::sqrt(std::max(0.0, 1 - random.x))});
 }
 
 class Gatherer {

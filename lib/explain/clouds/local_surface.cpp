@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "linear/geom_matrices.h"
-#include "linear/positive.h"
 #include "linear/symmetric_eigen.h"
 
 namespace gonio::explain {
@@ -27,29 +26,25 @@ Vec3 normal_of(std::span<const scan::ScanPoint* const> points, Vec3 middle) {
 
 }  // namespace
 
-std::array<double, 6> LocalSurface::terms(Vec3 point) const {
-  const double a = dot(point - middle_, u_) / scale_, b = dot(point - middle_, v_) / scale_;
-  return {1, a, b, a * a, a * b, b * b};
+Vec3 LocalSurface::local(Vec3 point) const {
+  return basis_.to_local(point - middle_) / scale_;
 }
 
 Vec2 LocalSurface::slope(Vec3 point) const {
-  const auto t = terms(point);
-  return Vec2{height_[1] + 2 * height_[3] * t[1] + height_[4] * t[2],
-              height_[2] + height_[4] * t[1] + 2 * height_[5] * t[2]} *
-         (1 / scale_);
+  const Vec3 p = local(point);
+  const mesh::LocalQuadratic::Terms& c = fit_.c;
+  return {c[1] + 2 * c[3] * p.x + c[4] * p.y, c[2] + c[4] * p.x + 2 * c[5] * p.y};
 }
 
 double LocalSurface::off(Vec3 point) const {
-  const auto t = terms(point);
+  const Vec3 p = local(point);
   const Vec2 s = slope(point);
-  double height = 0;
-  for (std::size_t k = 0; k < t.size(); ++k) height += t[k] * height_[k];
-  return (dot(point - middle_, normal_) - height) / std::sqrt(1 + s.x * s.x + s.y * s.y);
+  return scale_ * (p.z - fit_.at(p.x, p.y)) / std::sqrt(1 + s.x * s.x + s.y * s.y);
 }
 
 Vec3 LocalSurface::normal(Vec3 point) const {
   const Vec2 s = slope(point);
-  return normalized(normal_ - s.x * u_ - s.y * v_);
+  return normalized(basis_.to_world({-s.x, -s.y, 1}));
 }
 
 std::optional<LocalSurface> LocalSurface::about(std::span<const scan::ScanPoint> points, const PointsByPixel& by_pixel,
@@ -67,22 +62,14 @@ std::optional<LocalSurface> LocalSurface::about(std::span<const scan::ScanPoint>
   const auto count = static_cast<double>(about.size());
   if (count < fewest * side * side) return std::nullopt;
   s.middle_ = s.middle_ * (1 / count);
-  s.normal_ = normal_of(about, s.middle_);
-  s.u_ = normalized(cross(s.normal_, std::abs(s.normal_.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
-  s.v_ = cross(s.normal_, s.u_), s.scale_ = norm(about.front()->position_m - s.middle_);
-  std::array<double, 36> square{}, inverse{};
-  std::array<double, 6> right{};
+  s.basis_ = Basis(normal_of(about, s.middle_)), s.scale_ = norm(about.front()->position_m - s.middle_);
+  mesh::LocalQuadratic sums;
   for (const scan::ScanPoint* p : about) {
-    const auto row = s.terms(p->position_m);
-    const double height = dot(p->position_m - s.middle_, s.normal_);
-    for (std::size_t i = 0; i < 6; ++i) {
-      right[i] += height * row[i];
-      for (std::size_t j = 0; j < 6; ++j) square[6 * i + j] += row[i] * row[j];
-    }
+    const Vec3 at = s.local(p->position_m);
+    sums.add(at.x, at.y, at.z);
   }
-  if (!linear::positive_inverse<6>(square, inverse)) return std::nullopt;
-  for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) s.height_[i] += inverse[6 * i + j] * right[j];
+  s.fit_ = sums.fit();
+  if (!s.fit_.good) return std::nullopt;
   double squares = 0;
   for (const scan::ScanPoint* p : about) squares += s.off(p->position_m) * s.off(p->position_m) / count;
   if (!(squares <= roughest * roughest * s.scale_ * s.scale_)) return std::nullopt;

@@ -1,9 +1,9 @@
 // What a cloud's points about one of its pixels say of the surface there. Private to clouds/.
 #pragma once
-#include <array>
 #include <optional>
 
 #include "explain/clouds/cloud_reading.h"
+#include "mesh/clean/local_quadratic.h"
 
 namespace gonio::explain {
 
@@ -18,11 +18,12 @@ class LocalSurface {
   Vec3 normal(Vec3 point) const;  // unit, towards the rig's origin
 
  private:
-  std::array<double, 6> terms(Vec3 point) const;
+  Vec3 local(Vec3 point) const;  // over the plane, in units of `scale_`
   Vec2 slope(Vec3 point) const;
-  Vec3 middle_, normal_, u_, v_;
+  Vec3 middle_;
+  Basis basis_{Vec3{0, 0, 1}};
   double scale_ = 1;
-  std::array<double, 6> height_{};
+  mesh::LocalQuadratic::Fit fit_;
 };
 
 }  // namespace gonio::explain
