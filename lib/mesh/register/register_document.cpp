@@ -166,7 +166,10 @@ CloudRegisterSummary cloud_register_document(Document& document, const CloudRegi
   const std::string page = request.page.empty() ? std::string() : register_page(points, found, names, request.wish);
   if (request.wish.refine && found.refused.empty())
     for (std::size_t v = 0; v < found.views.size(); ++v)
-      if (v != request.wish.fixed) move(document, request, names[v], found.views[v]);
+      if (v != request.wish.fixed) {
+        move(document, request, names[v], found.views[v]);
+        document.clouds.at(names[v]).points = std::ranges::count(points.view, static_cast<std::uint32_t>(v));
+      }
   if (!request.page.empty()) write_file(request.page, page);
   document.registration.entry = {entry};
   return {found.pairs.size(), !found.refused.empty(), found.after.value};
