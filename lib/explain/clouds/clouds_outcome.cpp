@@ -120,8 +120,8 @@ std::string clouds_remarks(const Problem& problem, const CloudModel& model, cons
   }
   std::size_t asked = 0;
   for (std::size_t v = 0; v < model.input().views.size(); ++v) asked += model.rows(v).size();
-  add(format("%zu points of %zu clouds were asked, as many of each part of the picture.", asked,
-             model.input().views.size()));
+  add(format("%zu points of %zu %s were asked, as many of each part of the picture.", asked, model.input().views.size(),
+             model.input().against.empty() ? "clouds" : "overlaps"));
   return text;
 }
 
@@ -163,12 +163,13 @@ Illustration illustrate_clouds(const CloudModel& model, const Observations& o, c
   double sum = 0;
   for (const double r : e.residual_before) sum += r * r;
   const double scale = 2 * std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, e.residual_before.size())));
+  const std::string of = model.input().against.empty() ? "shape" : "other cloud";
   for (std::size_t v = 0; v < std::min(most_drawn, model.input().views.size()); ++v) {
     const std::string& name = model.input().views[v].name;
     const std::string full = quantity(scale, "m", 2);
-    result.pictures.push_back(
-        {name + ": how far points lie off the shape, over the picture (red: behind it, " + full + " at full colour)",
-         "", map_svg(model, o, v, e.residual_before, scale)});
+    result.pictures.push_back({name + ": how far points lie off the " + of + ", over the picture (red: behind it, " +
+                                   full + " at full colour)",
+                               "", map_svg(model, o, v, e.residual_before, scale)});
     if (!e.named.empty())
       result.pictures.push_back(
           {name + ": the same with the named physics", "", map_svg(model, o, v, e.residual_after, scale)});
