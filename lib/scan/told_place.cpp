@@ -55,17 +55,30 @@ ToldPlace::ToldPlace(const Sequence& sequence, Axis axis) : size_(sequence.size(
   }
 }
 
+// Of ((1 + contrast cos x) / 2)^gamma, over the first: ratios from the last to the first, where they converge.
+ToldPlace::Amplitudes ToldPlace::of_power(double gamma, double contrast) {
+  Amplitudes ratio, a;
+  double next = (gamma - harmonics) / (gamma + harmonics + 1);
+  for (std::size_t i = harmonics; i-- > 1;) {
+    const double h = static_cast<double>(i + 1);
+    next = ratio[i] = (gamma - h + 1) / ((gamma + h + 1) * next + 2 * h / contrast);
+  }
+  a[0] = 1;
+  for (std::size_t i = 1; i < harmonics; ++i) a[i] = a[i - 1] * ratio[i];
+  return a;
+}
+
 ToldPlace::Amplitudes ToldPlace::amplitudes(const Set& set, const Bend& bend) const {
   const double half = pi * set.periods / size_ * bend.covers_px, twice_cosine = 2 * std::cos(half);
   const double each = 2 * pi * set.periods / size_, spot = std::exp(-0.5 * bend.spot_px2 * each * each);
   // spot^(h^2): each is the last times spot^(2 h + 1).
   double left = spot, next_left = spot * spot * spot;
   Amplitudes a;
-  double amplitude = 1, sine = std::sin(half), before = 0;  // sin((h + 1) x) = 2 cos x sin(h x) - sin((h - 1) x)
+  const Amplitudes bent = of_power(bend.gamma, set.own_pixel[0]);
+  double sine = std::sin(half), before = 0;  // sin((h + 1) x) = 2 cos x sin(h x) - sin((h - 1) x)
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double h = static_cast<double>(i + 1);
-    a[i] = amplitude * left * set.own_pixel[i] * (half != 0 ? sine / (h * half) : 1);
-    amplitude *= (bend.gamma - h) / (bend.gamma + h + 1);
+    a[i] = bent[i] * left * set.own_pixel[i] * (half != 0 ? sine / (h * half) : 1);
     const double next = twice_cosine * sine - before;
     before = sine, sine = next;
     left *= next_left, next_left *= spot * spot;

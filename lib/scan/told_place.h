@@ -13,12 +13,14 @@ namespace gonio::scan {
 
 // The cosines of one axis as they were shown, and the place that they tell.
 //
-// A bent cosine is one of the same period with harmonics: ((1 + cos x) / 2)^gamma = cos^(2 gamma)(x / 2) is the sum of
-// a(h) cos(h x), a(h + 1) / a(h) = (gamma - h) / (gamma + h + 1) from h = 1 on (Gradshteyn & Ryzhik 3.631.9). Of each
-// the square pixels of the projector leave sinc(h periods / size), and a pixel of the camera that covers `covers_px` of
-// them sinc(h periods covers_px / size), and a projector out of focus, whose spots have the variance spot_px2 beyond
-// their squares, exp(-spot_px2 (2 pi h periods / size)^2 / 2): where that is not known, an exponent is taken for one
-// nearer to
+// A bent cosine is one of the same period with harmonics: of ((1 + m cos x) / 2)^gamma, m the contrast that a cosine
+// has which was averaged over each pixel when it was made, the sum of a(h) cos(h x) with, by x-derivatives of both
+// sides,
+//   a(h) / a(h - 1) = (gamma - h + 1) / ((gamma + h + 1) a(h + 1) / a(h) + 2 h / m)
+// (m = 1: (gamma - h + 1) / (gamma + h), Gradshteyn & Ryzhik 3.631.9). Of each the square pixels of the projector leave
+// sinc(h periods / size), and a pixel of the camera that covers `covers_px` of them sinc(h periods covers_px / size),
+// and a projector out of focus, whose spots have the variance spot_px2 beyond their squares, exp(-spot_px2 (2 pi h
+// periods / size)^2 / 2): where that is not known, an exponent is taken for one nearer to
 // 1. Four equal shifts see the third and fifth harmonic, which two exponents about 1.5 make alike; three see the
 // second.
 class ToldPlace {
@@ -51,6 +53,7 @@ class ToldPlace {
     // C + i S of the h-th harmonic alone, of amplitude 1 at the phase x: along[h] exp(i h x) + against[h] exp(-i h x).
     std::array<std::complex<double>, harmonics> along{}, against{};
   };
+  static Amplitudes of_power(double gamma, double contrast);
   Amplitudes amplitudes(const Set& set, const Bend& bend) const;
   std::complex<double> fitted(const Set& set, const Bend& bend, double theta) const;
   std::vector<Set> sets_;  // ascending periods

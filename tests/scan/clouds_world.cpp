@@ -18,8 +18,8 @@ namespace {
 
 using Point = std::array<double, 3>;
 constexpr double index_of_refraction = 1.5;
-constexpr int across = 6,
-              depths = 6;  // places of a camera's pixel along its row: a pixel covers some of the projector's
+constexpr int most_across = 6;  // places of a camera's pixel along its row: a pixel covers some of the projector's
+constexpr int depths = 6;
 
 double dot_of(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -37,9 +37,12 @@ Point refracted(const Point& d, const Point& n) {
   return out;
 }
 
+constexpr int rings = 8, spokes = 6;
+constexpr double fading_per_m = 200;
+
 class World {
  public:
-  World(const CloudsWorld& w, std::size_t cloud) : w_(w), cloud_(cloud) {
+  World(const CloudsWorld& w, std::size_t cloud) : w_(w), cloud_(cloud), radii_(radii()) {
     view_.shape = w.shape == CloudsWorld::Shape::planes ? ScanWorld::Shape::plane : ScanWorld::Shape::ball;
     view_.left = {240, 180, 450, {-0.08, 0, 0}, 0.1};
     // A pixel of the camera covers nearly two of the projector's.
@@ -122,6 +125,49 @@ class World {
     return at;
   }
 
+  // Of light that a source m below a surface sends back, fading over its way rho, rho^2 = r^2 + m^2, the share
+  // exp(-fading (rho - m)) m / rho leaves beyond r: rings of equal shares.
+  std::vector<double> radii() const {
+    std::vector<double> all;
+    const double m = w_.scatter_m;
+    for (int ring = 0; m > 0 && ring < rings; ++ring) {
+      double rho = m;
+      for (int step = 0; step < 30; ++step)  // Newton
+        rho -=
+            (std::log((ring + 0.5) / rings) + fading_per_m * (rho - m) + std::log(rho / m)) / (fading_per_m + 1 / rho);
+      all.push_back(std::sqrt(std::max(0.0, rho * rho - m * m)));
+    }
+    return all;
+  }
+
+  // Where light enters that leaves at `exit`, and its weight, by what the projector lights it with.
+  struct Entry {
+    Point at;
+    double weight = 1;
+  };
+  std::vector<Entry> entries(const Point& exit) const {
+    if (radii_.empty()) return {{exit}};
+    const Point n = normal(exit), x = unit({n[2], 0, -n[0]}),
+                y = {n[1] * x[2] - n[2] * x[1], n[2] * x[0] - n[0] * x[2], n[0] * x[1] - n[1] * x[0]};
+    std::vector<Entry> all;
+    for (int ring = 0; ring < rings; ++ring)
+      for (int k = 0; k < spokes; ++k) {
+        const double r = radii_[static_cast<std::size_t>(ring)], angle = 2 * pi * (k + 0.5 * (ring % 2)) / spokes;
+        Entry e;
+        for (std::size_t i = 0; i < 3; ++i) e.at[i] = exit[i] + r * (std::cos(angle) * x[i] + std::sin(angle) * y[i]);
+        if (view_.shape == ScanWorld::Shape::ball) {
+          const Point out = normal(e.at), middle = {view_.ball_x, 0, view_.distance};
+          for (std::size_t i = 0; i < 3; ++i) e.at[i] = middle[i] + view_.radius * out[i];
+        }
+        Point to;
+        for (std::size_t i = 0; i < 3; ++i) to[i] = view_.projector.at[i] - e.at[i];
+        e.weight = std::max(0.0, dot_of(unit(to), normal(e.at))) * (view_.distance * view_.distance / dot_of(to, to)) /
+                   (rings * spokes);
+        all.push_back(e);
+      }
+    return all;
+  }
+
   double printed(const Point& at) const {
     if (w_.print_m == 0) return 1;
     const double slope = std::sqrt(1 + view_.tilt * view_.tilt);
@@ -173,7 +219,7 @@ class World {
       shown.push_back(std::pow(scan::light_at(sequence, frame, rows ? 0 : u, rows ? u : 0), w_.gamma));
     spots(shown);
     std::vector<double> lights;
-    const int places = w_.depth_m > 0 ? depths : 1;
+    const int places = w_.depth_m > 0 ? depths : 1, across = w_.scatter_m > 0 ? 2 : most_across;
     for (int i = 0; i < now.left.width * now.left.height; ++i) {
       double light = 0;
       for (int k = 0; k < across; ++k) {
@@ -183,13 +229,15 @@ class World {
         const Point direction = unit(now.left.direction(x, y));
         for (int d = 0; d < places; ++d) {
           const double depth = w_.depth_m > 0 ? -w_.depth_m * std::log(1 - (d + 0.5) / places) : 0;
-          const auto pixel = lit_from(depth > 0 ? entry(exit, direction, depth) : exit);
-          const double at = rows ? pixel[1] : pixel[0], other = rows ? pixel[0] : pixel[1];
-          if (!(at > 0 && at < size - 1 && other > 0 && other < (rows ? sequence.width_px : sequence.height_px) - 1))
-            continue;
-          const auto u = static_cast<std::size_t>(at);
-          light +=
-              printed(exit) * (shown[u] * (1 - (at - double(u))) + shown[u + 1] * (at - double(u))) / (across * places);
+          for (const Entry& e : entries(depth > 0 ? entry(exit, direction, depth) : exit)) {
+            const auto pixel = lit_from(e.at);
+            const double at = rows ? pixel[1] : pixel[0], other = rows ? pixel[0] : pixel[1];
+            if (!(at > 0 && at < size - 1 && other > 0 && other < (rows ? sequence.width_px : sequence.height_px) - 1))
+              continue;
+            const auto u = static_cast<std::size_t>(at);
+            light += e.weight * printed(exit) * (shown[u] * (1 - (at - double(u))) + shown[u + 1] * (at - double(u))) /
+                     (across * places);
+          }
         }
       }
       lights.push_back(0.03 + 0.7 * light);
@@ -209,6 +257,7 @@ class World {
   const CloudsWorld& w_;
   std::size_t cloud_;
   ScanWorld view_;
+  std::vector<double> radii_;
   Pinhole calibrated_;
 };
 

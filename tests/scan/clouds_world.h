@@ -21,6 +21,7 @@ struct CloudsWorld {
   double k1 = 0;                // of the projector's lens
   double turns_rad_per_s = 0;   // rig.drift, of the projector about its y
   double depth_m = 0;           // light comes back from exponential depths of this mean, index 1.5
+  double scatter_m = 0;         // light comes back as from sources so deep that diffuse, fading over 5 mm of way
   double rendered = 0;          // > 0: by lib/render (rendered_world.h), so many samples a pixel
   double scattering_per_m = 0;  // rendered: of a translucent solid (see there)
   double print_m = 0;           // side of the squares that are printed on planes, a fifth as bright as the ground

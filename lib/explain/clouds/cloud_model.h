@@ -26,7 +26,9 @@ struct CloudRole {
     along,
     albedo,
     spread,
-    spot
+    spot,
+    exit_depth,
+    scatter
   } part = Part::shape;
   std::size_t index = 0;  // shape, pose, drift: of its numbers; lens: term; principal: x or y; thermal: focal, x, y;
                           // along: cloud
@@ -37,16 +39,21 @@ struct CloudRole {
 
 // A point, and what of the stated rig the prediction is linear about.
 struct CloudRow {
-  Vec2 pixel;                                    // of the first camera
-  Vec3 origin, direction;                        // its ray as stated, rig frame
-  Vec2 told;                                     // pixel of the second device
-  Vec2 along;                                    // unit: where that goes as the point goes along the ray
-  Vec2 expected;                                 // told by the shape where it was fitted
-  double metre_per_px = 0;                       // off the shape, per pixel along `along`
-  double sigma_m = 0;                            // along the normal, as the cloud states
-  double px_per_metre = 0;                       // of `along`, by the point's way along the ray
-  std::array<Vec2, 2> across;                    // of the second device, by a pixel of the first along its x and its y
-  Vec3 normal;                                   // of the shape there, towards the first camera
+  Vec2 pixel;                  // of the first camera
+  Vec3 origin, direction;      // its ray as stated, rig frame
+  Vec2 told;                   // pixel of the second device
+  Vec2 along;                  // unit: where that goes as the point goes along the ray
+  Vec2 expected;               // told by the shape where it was fitted
+  double metre_per_px = 0;     // off the shape, per pixel along `along`
+  double sigma_m = 0;          // along the normal, as the cloud states
+  double px_per_metre = 0;     // of `along`, by the point's way along the ray
+  std::array<Vec2, 2> across;  // of the second device, by a pixel of the first along its x and its y
+  Vec3 normal;                 // of the shape there, towards the first camera
+  // Along the shape, of a projector: derivatives of log irradiance, 1/m, and of the pixels that it lights with, px/m,
+  // px/m^2 (xx, xy, yy). Not known: all zero.
+  Vec2 lit;
+  std::array<Vec2, 2> told_slope;
+  std::array<std::array<double, 3>, 2> told_bend{};
   const equation::Neighbours* bright = nullptr;  // none: not known
   Vec2 slope;                                    // of the logarithm of brightness, per pixel of the first camera
   double incidence_rad = 0, depth_m = 0;
@@ -82,12 +89,15 @@ class CloudModel {
   State state_of(std::span<const CloudRole> roles, std::span<const double> values, std::size_t side,
                  std::size_t group) const;
   std::array<Vec2, 2> across(const CloudShape& shape, const CloudRow& row) const;
+  void differentiate(const CloudShape& shape, CloudRow& row) const;
   void add_group(std::size_t group);
   void light_themselves();
   std::optional<CloudRow> row_of(const CloudView& view, std::size_t point) const;
   std::optional<Vec2> pixel_told(const State& state, const Side& side, std::size_t row) const;
   double turned_px(const State& state, const Side& side, std::size_t row, std::size_t axis) const;
   static double covered(const CloudRow& row, std::size_t axis);
+  double rad_per_px(std::size_t axis, double periods) const;
+  double scattered(const CloudRow& row, std::size_t axis, double periods, double spread_m) const;
   Vec2 phase_slope(const CloudRow& row, std::size_t axis, double periods) const;
 
   const CloudsInput& input_;

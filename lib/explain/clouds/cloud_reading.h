@@ -43,7 +43,7 @@ class PointsByPixel {
   std::unordered_map<std::uint64_t, std::size_t> found_;
 };
 
-inline constexpr std::size_t tiles_a_side = 6, points_a_tile = 16;
+inline constexpr std::size_t tiles_a_side = 6, points_a_tile = 32;
 // As many of each tile of the picture, evenly through its points: a part is enough, and a corner counts like the
 // middle.
 struct Chosen {

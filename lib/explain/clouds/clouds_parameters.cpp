@@ -17,7 +17,7 @@ namespace gonio::explain {
 namespace {
 
 using Part = CloudRole::Part;
-constexpr double misplaced = 1;  // times a freedom's size: 1 mm, 1 mrad
+constexpr double misplaced = 10;  // times a freedom's size: 1 cm, 10 mrad
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string rate_of(const mechanism::Parameter& p) {
@@ -57,6 +57,10 @@ CloudRole role_of(const mechanism::Parameter& p, std::size_t device) {
     role.part = Part::spread;
   else if (name == "spot_px2")
     role.part = Part::spot;
+  else if (name == "exit_depth_m")
+    role.part = Part::exit_depth;
+  else if (name == "spread_m")
+    role.part = Part::scatter;
   else
     role.part = Part::lens, role.index = camera::distortion_index(name, "explain");
   return role;
@@ -197,6 +201,12 @@ class CloudDeclaration {
       case Part::albedo:
         for (std::size_t v = 0; v < input_.views.size(); ++v)
           if (model_.indirect(v).any()) return true;
+        return false;
+      case Part::scatter:
+        if (!cosines) return false;
+        for (std::size_t v = 0; v < input_.views.size(); ++v)
+          for (const CloudRow& row : model_.rows(v))
+            if (row.lit.x != 0 || row.lit.y != 0) return true;
         return false;
       case Part::gamma:
       case Part::spot:

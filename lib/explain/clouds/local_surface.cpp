@@ -47,6 +47,11 @@ Vec3 LocalSurface::normal(Vec3 point) const {
   return normalized(basis_.to_world({-s.x, -s.y, 1}));
 }
 
+Vec3 LocalSurface::along(Vec3 point, Vec3 direction) const {
+  for (int step = 0; step < 3; ++step) point += direction * (-off(point) / dot(normal(point), direction));
+  return point;
+}
+
 std::optional<LocalSurface> LocalSurface::about(std::span<const scan::ScanPoint> points, const PointsByPixel& by_pixel,
                                                 Vec2 pixel) {
   std::vector<const scan::ScanPoint*> about;

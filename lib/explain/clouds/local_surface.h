@@ -14,8 +14,9 @@ class LocalSurface {
   // Nothing where a third of the neighbours have no point, or where they lie far off one smooth surface: at an edge.
   static std::optional<LocalSurface> about(std::span<const scan::ScanPoint> points, const PointsByPixel& by_pixel,
                                            Vec2 pixel);
-  double off(Vec3 point) const;   // signed distance, towards the rig's origin positive
-  Vec3 normal(Vec3 point) const;  // unit, towards the rig's origin
+  double off(Vec3 point) const;                  // signed distance, towards the rig's origin positive
+  Vec3 normal(Vec3 point) const;                 // unit, towards the rig's origin
+  Vec3 along(Vec3 point, Vec3 direction) const;  // where a line through a point near it meets it
 
  private:
   Vec3 local(Vec3 point) const;  // over the plane, in units of `scale_`

@@ -76,18 +76,38 @@ class Overlap {
     return seen;
   }
 
+  // Where a point would lie without what it is off by: nothing but its values may know of its noise.
+  Vec3 on_surface(const LocalSurface& surface, const scan::ScanPoint& point, Vec3 at,
+                  const Rigid<frame::Rig, frame::Rig>& other_from_its) const {
+    const scan::Station& first = input_.stations[0];
+    const Vec3 direction = other_from_its.rotate(first.rig_from_camera.rotate(first.lens.ray(point.pixel).direction));
+    return surface.along(at, direction);
+  }
+
   std::optional<Met> meet(std::size_t point, std::uint32_t tile) const {
     const scan::ScanPoint& p = own_.read.points[point];
     const Vec3 at = other_from_own_ * p.position_m;
-    const Vec2 pixel = *pixel_in_other(at);
-    const auto beside = other_.by_pixel.at(std::lround(pixel.x), std::lround(pixel.y));
-    const auto surface = LocalSurface::about(other_.read.points, other_.by_pixel, pixel);
     const auto own = LocalSurface::about(own_.read.points, own_.by_pixel, p.pixel);
-    if (!beside || !surface || !own) return std::nullopt;
-    const Vec3 normal = surface->normal(at), there = other_.read.points[*beside].position_m;
+    const auto about = [this](Vec3 place) {
+      return LocalSurface::about(other_.read.points, other_.by_pixel, *pixel_in_other(place));
+    };
+    const auto nearly = about(at);
+    if (!own || !nearly) return std::nullopt;
+    const Vec3 place = on_surface(*nearly, p, at, other_from_own_);
+    const auto pixel = pixel_in_other(place);
+    const auto beside = pixel ? other_.by_pixel.at(std::lround(pixel->x), std::lround(pixel->y)) : std::nullopt;
+    const auto surface = pixel ? about(place) : std::nullopt;
+    if (!beside || !surface) return std::nullopt;
+    const scan::ScanPoint& there = other_.read.points[*beside];
+    const Vec3 normal = surface->normal(place);
     if (dot(other_from_own_.rotate(own->normal(p.position_m)), normal) < same_side) return std::nullopt;
-    const double off = surface->off(at), beside_off = surface->off(there);
-    return Met{point, *beside, tile, at - off * normal, normal, there - beside_off * normal, off - beside_off};
+    return Met{point,
+               *beside,
+               tile,
+               on_surface(*surface, p, at, other_from_own_),
+               normal,
+               on_surface(*surface, there, there.position_m, {}),
+               surface->off(at) - surface->off(there.position_m)};
   }
 
   void fill(const std::vector<Met>& kept, CloudView& view, CloudView& against) const {
