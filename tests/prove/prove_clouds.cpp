@@ -65,7 +65,7 @@ const World worlds[] = {
      "albedo",
      0.8,
      {.shape = Shape::grooves, .rendered = 256, .albedo = 0.8}},
-    {"rendered-dark-grooves", "nothing", "-", 0, {.shape = Shape::grooves, .rendered = 256, .albedo = 0.05}},
+    {"rendered-dark-grooves", "nothing", "-", 0, {.shape = Shape::grooves, .rendered = 256, .albedo = 0.01}},
     {"rendered-marble-balls",
      "structured-light.subsurface",
      "-",
