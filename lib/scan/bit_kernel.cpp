@@ -41,8 +41,10 @@ void judge_bits(const BitBlock& read, const BitLimits& limits, bool has_inverse,
   if (!has_inverse) return;
   for (std::size_t i = 0; i < pixels_of_block; ++i) {
     const float sum = read.bit[i] + inverse[i], off = std::abs(sum - read.lit_and_dark[i]),
-                variance = 4 * l.variance + l.slope * (positive(sum) + positive(read.lit_and_dark[i]));
-    verdict.moved[i] = static_cast<std::uint32_t>(off > l.moved_share * read.reflected[i]) &
+                variance = 4 * l.variance + l.slope * (positive(sum) + positive(read.lit_and_dark[i])),
+                least = std::min(l.moved_share * read.reflected[i],
+                                 std::max(l.moved_least * read.reflected[i], std::abs(difference[i])));
+    verdict.moved[i] = static_cast<std::uint32_t>(off > least) &
                        static_cast<std::uint32_t>(off * off > l.squared_moved_sigmas * variance);
   }
 }

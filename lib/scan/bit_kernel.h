@@ -21,7 +21,9 @@ struct BitLimits {
   float share = 0;                // the same, of what white adds
   float squared_sigmas = 0;       // the same squared, of its variance
   float variance = 0, slope = 0;  // of a reading: in the dark, and per light
-  float moved_share = 0, squared_moved_sigmas = 0;
+  // Of what bit and inverse differ by from white and black: the least, of what white adds, that could have turned a
+  // bit; what says that something else stands there; and of its noise.
+  float moved_least = 0, moved_share = 0, squared_moved_sigmas = 0;
 };
 
 struct BitBlock {

@@ -24,7 +24,7 @@ constexpr double most_contradicting = 25,
 // Light from other parts of the scene adds to coarse cosines, by a share of what they have more than the finest, and
 // turns their phases by a share of that, unless phases agree all the same; and it makes fine ones disagree.
 constexpr double turned_by_indirect = 0.05, agreeing = 8, disagreeing = 0.5;
-constexpr std::size_t pixels_at_once = 1 << 14;
+constexpr std::size_t pixels_at_once = 1 << 14, most_sampled = 20000;
 
 // Sums over the shifts of one number of periods.
 struct ShiftSums {
@@ -69,10 +69,19 @@ class CosineDecoder {
       if (!noise_known_) find_noise(all);
       find_gamma(all);
       places(axis, all);
+      if (in_equal_steps(all.back().shifts_rad)) keep_means(all);
     }
   }
 
  private:
+  void keep_means(const std::vector<ShiftSums>& all) {
+    const ShiftSums& finest = all.back();
+    const std::vector<float>& sums = finest.of_all;
+    shifts_of_means_ = static_cast<double>(finest.shifts_rad.size());
+    means_.resize(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) means_[i] = sums[i] / static_cast<float>(shifts_of_means_);
+  }
+
   std::vector<ShiftSums> sums(Axis axis) const {
     std::map<double, std::vector<std::size_t>> frames;
     for (std::size_t f = 0; f < r_.sequence.frames.size(); ++f) {
@@ -167,6 +176,7 @@ class CosineDecoder {
       inverses.push_back(shift_fit(s.shifts_rad));
       if (gamma.bends()) bent_.emplace_back(gamma, s.shifts_rad, inverses.back());
     }
+    usual_share_ = usual_share(all, inverses);
     parallel_for(0, (pixels + pixels_at_once - 1) / pixels_at_once, [&](std::size_t n) {
       std::vector<Phase> phases(all.size());
       for (std::size_t i = n * pixels_at_once; i < std::min(pixels, (n + 1) * pixels_at_once); ++i) {
@@ -194,6 +204,7 @@ class CosineDecoder {
       const BentPhase::True straight = bent_[f].straightened(phases[f].theta, phases[f].sigma);
       phases[f].theta = straight.theta, phases[f].sigma = straight.sigma;
     }
+    if (r_.motion && moved(i, phases, all, reflected)) return Refusal::motion;
     codes_.reflected[i] = static_cast<float>(reflected);
     const double size = r_.sequence.size(axis);
     const std::size_t finest = all.size() - 1;
@@ -223,6 +234,7 @@ class CosineDecoder {
       return Refusal::contradictory;
     if (r_.indirect && next >= 0 && next - least < least_ahead * (wider + disagreeing * fine_least / further))
       return Refusal::interreflection;
+    if (share_of_finest(phases) < r_.least_direct * usual_share_) return Refusal::subsurface;
     double sum = 0, weights = 0;
     for (std::size_t f = 0; f <= finest; ++f) {
       const double px_per_rad = size / (2 * pi * all[f].periods),
@@ -232,6 +244,48 @@ class CosineDecoder {
     }
     place = static_cast<float>(sum / weights), sigma = static_cast<float>(std::sqrt(1 / weights));
     return Refusal::none;
+  }
+
+  // Of amplitudes; 1 where there is one number of periods.
+  static double share_of_finest(const std::vector<Phase>& phases) {
+    double largest = 0;
+    for (const Phase& p : phases) largest = std::max(largest, p.amplitude);
+    return phases.back().amplitude / largest;
+  }
+
+  // What the best tenth of the picture has.
+  double usual_share(const std::vector<ShiftSums>& all, const std::vector<Mat3>& inverses) const {
+    std::vector<double> shares;
+    std::vector<Phase> phases(all.size());
+    const std::size_t pixels = codes_.refusal.size(), stride = 1 + pixels / most_sampled;
+    for (std::size_t i = 0; i < pixels; i += stride) {
+      bool counts = codes_.told(i);
+      for (std::size_t f = 0; counts && f < all.size(); ++f) {
+        phases[f] = phase_of(inverses[f], all[f].of_all[i], all[f].with_cos[i], all[f].with_sin[i], codes_.noise);
+        counts = all[f].spoiled[i] == 0 && phases[f].amplitude > least_of_noise * phases[f].amplitude_sigma;
+      }
+      if (counts) shares.push_back(share_of_finest(phases));
+    }
+    if (shares.empty()) return 0;
+    const auto best = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() * 9 / 10);
+    std::ranges::nth_element(shares, best);
+    return *best;
+  }
+
+  // Means over shifts that differ, from each other and from those of the axis before.
+  bool moved(std::size_t i, const std::vector<Phase>& phases, const std::vector<ShiftSums>& all,
+             double reflected) const {
+    const auto variance = [&](double mean, double shifts) {
+      return photograph::noise_variance(codes_.noise, std::max(0.0, mean)) / shifts;
+    };
+    const double here = phases.back().mean, own = variance(here, static_cast<double>(all.back().shifts_rad.size()));
+    const auto differs = [&](double mean, double shifts) {
+      const double off = std::abs(mean - here);
+      return off > moved_least * reflected && off * off > moved_sigmas * moved_sigmas * (variance(mean, shifts) + own);
+    };
+    for (std::size_t f = 0; f + 1 < all.size(); ++f)
+      if (differs(phases[f].mean, static_cast<double>(all[f].shifts_rad.size()))) return true;
+    return !means_.empty() && differs(means_[i], shifts_of_means_);
   }
 
   // By how much variances of phases are larger than own_error_rad has it.
@@ -246,6 +300,9 @@ class CosineDecoder {
   const FrameReader& read_;
   Codes& codes_;
   bool noise_known_ = false;
+  double usual_share_ = 0;
+  std::vector<float> means_;  // over the shifts of the axis before, in equal steps
+  double shifts_of_means_ = 0;
   std::vector<BentPhase> bent_;  // by number of periods; none: the projector is linear
 };
 

@@ -26,6 +26,17 @@
 // A projector that is not linear bends cosines; four shifts and more tell its exponent, and phases are straightened
 // (bent_phase.h).
 //
+// Motion: a bit and its inverse light every pixel of the projector once, as white and black do, and cosines in equal
+// steps light all of them half, whatever their number of periods: whatever way light takes, these sums are the same of
+// a scene and a lamp that stand still. Means of cosines that differ by more than a tenth of what white adds are
+// refused; sums of bits where they differ by half of it, or by what the bit and its inverse differ by, which then says
+// nothing (not those of the three finest bits, which move a place by little). All only beyond five standard deviations,
+// by chance once in a million sums; saturated readings are no sums.
+//
+// Subsurface: a translucent thing spreads light beneath and loses fine cosines, smoothly, so that phases still agree
+// and are wrong (structured-light.subsurface). The finest amplitude over the largest, over what the best tenth of the
+// picture has (the loss of lenses), is the share of light that comes straight back.
+//
 // Lines: the centroid of the light over the offsets at which the pixel is lit, where a Gray code tells the period
 // (Guehring 2001).
 #pragma once
@@ -57,10 +68,25 @@ struct CameraFrame {
 };
 
 // Why a pixel has no code. edge: the stripe's border goes through it; contradictory: its numbers of periods do not
-// agree; interreflection: light from other parts of the scene may have made a bit, or a period, another.
-enum class Refusal : std::uint8_t { none, masked, dark, saturated, edge, contradictory, outside, interreflection };
-constexpr std::array<std::string_view, 8> refusal_names{"none", "masked",        "dark",    "saturated",
-                                                        "edge", "contradictory", "outside", "interreflection"};
+// agree; interreflection: light from other parts of the scene may have made a bit, or a period, another; motion: sums
+// that light cannot change differ; subsurface: fine cosines are lost in the thing; ambiguous: one pixel of the
+// projector is told by pixels that lie apart (unique_places.h). Numbers are written to files: new ones come last.
+enum class Refusal : std::uint8_t {
+  none,
+  masked,
+  dark,
+  saturated,
+  edge,
+  contradictory,
+  outside,
+  interreflection,
+  motion,
+  subsurface,
+  ambiguous
+};
+constexpr std::array<std::string_view, 11> refusal_names{"none",   "masked",        "dark",     "saturated",
+                                                         "edge",   "contradictory", "outside",  "interreflection",
+                                                         "motion", "subsurface",    "ambiguous"};
 
 struct Codes {
   int width = 0, height = 0;
@@ -86,6 +112,8 @@ struct DecodeRequest {
   double least_difference = 0;  // between a bit and its inverse: less is an edge, whatever the noise
   double least_share = 0.05;    // of what white adds, for the same
   double least_sigmas = 2;      // of its noise, for the same
+  double least_direct = 0.25;   // share of light that comes straight back; less is subsurface
+  bool motion = true;           // refuse what moved
   bool indirect = true;         // refuse what light from other parts of the scene may have made another
   bool contradictions = true;   // refuse phases that do not agree on a place; else the best is taken
 };

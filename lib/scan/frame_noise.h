@@ -10,6 +10,9 @@
 
 namespace gonio::scan {
 
+// What must be equal and differs by more, of what white adds and of its noise: something moved.
+constexpr double moved_least = 0.1, moved_sigmas = 5;
+
 struct Contradiction {
   float light = 0;       // of the pixel
   float difference = 0;  // with the variance of a single reading

@@ -22,6 +22,7 @@ constexpr int direct_bits = 5;           // next to the finest, of each axis: wh
 constexpr float share_unit = 1 / 200.f;  // of shares in bytes
 constexpr float direct_margin = 0.15f;   // error of the direct share, twice, and of a bit's
 constexpr int coarser = 3;               // than the finest bit: of which light goes to few stripes
+constexpr float moved_share = 0.5f;      // of what white adds: something else stands there
 
 std::uint8_t share_code(float share) {
   return static_cast<std::uint8_t>(std::min(share, 1.2f) / share_unit + 0.5f);
@@ -156,9 +157,14 @@ class GrayDecoder {
   BitLimits limits() const {
     const photograph::NoiseModel noise(codes_.noise);
     const photograph::NoiseVariance variance_of(noise);
-    return {static_cast<float>(r_.least_difference), static_cast<float>(r_.least_share),
-            static_cast<float>(r_.least_sigmas * r_.least_sigmas), static_cast<float>(variance_of.least()),
-            static_cast<float>(variance_of.slope())};
+    return {static_cast<float>(r_.least_difference),
+            static_cast<float>(r_.least_share),
+            static_cast<float>(r_.least_sigmas * r_.least_sigmas),
+            static_cast<float>(variance_of.least()),
+            static_cast<float>(variance_of.slope()),
+            static_cast<float>(moved_least),
+            moved_share,
+            static_cast<float>(moved_sigmas * moved_sigmas)};
   }
 
   void take(Axis axis, int bit, std::size_t bit_frame, std::optional<std::size_t> inverse_frame) {
@@ -168,7 +174,8 @@ class GrayDecoder {
     std::vector<std::uint32_t>& gray = gray_[static_cast<std::size_t>(axis)];
     const BitLimits limit = limits();
     const auto direct = shares_.find({axis, bit});
-    const bool coarse = !least_share_.empty() && bit >= finest_[static_cast<std::size_t>(axis)] + coarser,
+    const bool of_many = bit >= finest_[static_cast<std::size_t>(axis)] + coarser,
+               coarse = !least_share_.empty() && of_many, moves = r_.motion && of_many,
                of_shares = coarse || direct != shares_.end();
     for_blocks([&](std::size_t first, std::size_t count) {
       BitBlock read;
@@ -185,6 +192,8 @@ class GrayDecoder {
       for (std::size_t i = 0; i < count; ++i) {
         Refusal& refusal = codes_.refusal[first + i];
         refusal = verdict.edge[i] != 0 && refusal == Refusal::none ? Refusal::edge : refusal;
+        if (moves && verdict.moved[i] != 0 && (refusal == Refusal::none || refusal == Refusal::edge))
+          refusal = Refusal::motion;
       }
       for (std::size_t i = 0; of_shares && i < count; ++i) {
         const std::uint8_t share = share_code(std::abs(verdict.share[i]));

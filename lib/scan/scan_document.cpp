@@ -34,7 +34,8 @@ DecodeRequest decoding_of(const ScanRequest& request, const Station& camera) {
   decoding.width = camera.lens.width_px(), decoding.height = camera.lens.height_px();
   decoding.least_reflected = request.least_reflected, decoding.least_difference = request.least_difference;
   decoding.least_share = request.least_share, decoding.least_sigmas = request.least_sigmas;
-  decoding.indirect = request.indirect;
+  decoding.least_direct = request.least_direct;
+  decoding.motion = request.motion, decoding.indirect = request.indirect;
   return decoding;
 }
 

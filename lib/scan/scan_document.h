@@ -15,12 +15,13 @@ struct ScanRequest {
   std::vector<std::string> cameras;  // that look on: one, with a projector, or two
   std::string projector{};           // name in cameras; empty: its pixels tell cameras apart, and no more
   double least_reflected = 0, least_difference = 0, least_share = 0.05,
-         least_sigmas = 2;       // decode.h; light, 1 where a file is full
-  bool indirect = true;          // decode.h
-  std::string shape{};           // that all points lie on, known to the user: "plane" | "sphere"; empty: nothing
-  double radius_m = 0;           // of the sphere, calibrated
-  std::filesystem::path page{};  // report to write; empty: none
-  bool codes = false;            // write VIEW-CAMERA-codes.exr
+         least_sigmas = 2;              // decode.h; light, 1 where a file is full
+  double least_direct = 0.25;           // decode.h
+  bool motion = true, indirect = true;  // decode.h
+  std::string shape{};                  // that all points lie on, known to the user: "plane" | "sphere"; empty: nothing
+  double radius_m = 0;                  // of the sphere, calibrated
+  std::filesystem::path page{};         // report to write; empty: none
+  bool codes = false;                   // write VIEW-CAMERA-codes.exr
   std::function<std::filesystem::path(const std::string& name)> output_path{};
   std::function<void(const std::filesystem::path&)> note_input{};
 };

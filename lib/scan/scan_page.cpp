@@ -21,13 +21,31 @@ constexpr int widest = 640, finest_grid = 160;  // pixels of a picture; cells of
 constexpr float torn = 6;                       // times the usual step in depth between two cells: no surface there
 
 // Colours that the colour-blind tell apart (Okabe & Ito 2008), in the order of Refusal.
-constexpr std::array<report::Colour, 7> refusal_colours{{{0.88f, 0.88f, 0.88f},
-                                                         {0, 0, 0},
-                                                         {0.27f, 0.27f, 0.27f},
-                                                         {0.90f, 0.62f, 0},
-                                                         {0.34f, 0.71f, 0.91f},
-                                                         {0.84f, 0.37f, 0},
-                                                         {0.80f, 0.47f, 0.65f}}};
+struct RefusalColour {
+  report::Colour colour;
+  const char* name;
+};
+constexpr std::array<RefusalColour, refusal_names.size()> refusal_colours{{{{0.88f, 0.88f, 0.88f}, "light grey"},
+                                                                           {{0, 0, 0}, "black"},
+                                                                           {{0.27f, 0.27f, 0.27f}, "dark grey"},
+                                                                           {{0.90f, 0.62f, 0}, "orange"},
+                                                                           {{0.34f, 0.71f, 0.91f}, "light blue"},
+                                                                           {{0.84f, 0.37f, 0}, "vermilion"},
+                                                                           {{0.80f, 0.47f, 0.65f}, "pink"},
+                                                                           {{0.94f, 0.89f, 0.26f}, "yellow"},
+                                                                           {{0, 0.62f, 0.45f}, "green"},
+                                                                           {{0.45f, 0.30f, 0.15f}, "brown"},
+                                                                           {{0, 0.45f, 0.70f}, "blue"}}};
+
+// Of the refusals that occur.
+std::string refusals_in_words(const Codes& codes) {
+  std::string text;
+  for (std::size_t r = 0; r < refusal_colours.size(); ++r)
+    if (std::ranges::count(codes.refusal, static_cast<Refusal>(r)) > 0)
+      text += (text.empty() ? "" : "; ") + std::string(refusal_colours[r].name) + ": " +
+              (r == 0 ? "told" : std::string(refusal_names[r]));
+  return text;
+}
 
 // A smaller picture of sRGB codes; `colour` of a pixel of the camera.
 template <class ColourOf>
@@ -70,10 +88,9 @@ std::vector<report::Figure> figures_of(const Codes& codes, const Sequence& seque
   }
   figures.push_back(
       {.png = png_of(codes.width, codes.height,
-                     [&](std::size_t i) { return refusal_colours[static_cast<std::size_t>(codes.refusal[i])]; }),
+                     [&](std::size_t i) { return refusal_colours[static_cast<std::size_t>(codes.refusal[i])].colour; }),
        .title = "Pixels that are not told",
-       .caption = "light grey: told; dark grey: dark; orange: saturated; light blue: the border of a stripe; "
-                  "vermilion: contradictory; pink: outside; black: masked"});
+       .caption = refusals_in_words(codes)});
   return figures;
 }
 

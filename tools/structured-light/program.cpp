@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "scan/decode.h"
 #include "scan/scan_document.h"
 #include "tools/structured-light/options.h"
 #include "tools/structured-light/pattern.h"
@@ -48,6 +49,7 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   request.least_reflected = call.number("least-light");
   request.least_difference = call.number("least-difference");
   request.least_share = call.number("least-share"), request.least_sigmas = call.number("least-sigmas");
+  request.least_direct = call.number("least-direct"), request.motion = !call.flag("keep-moved");
   request.indirect = !call.flag("keep-indirect"), request.codes = call.flag("codes");
   if (call.given("shape")) request.shape = call.text("shape");
   if (call.given("radius")) request.radius_m = call.number("radius");
@@ -58,6 +60,14 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
+}
+
+// "0 told, 1 masked, ..."
+std::string refusals() {
+  std::string all = "0 told";
+  for (std::size_t r = 1; r < scan::refusal_names.size(); ++r)
+    all += ", " + std::to_string(r) + " " + std::string(scan::refusal_names[r]);
+  return all;
 }
 
 void check(cli::Invocation& call) {
@@ -111,8 +121,7 @@ const cli::Program& gonio_program() {
                  "points with sigma, covariance, reprojection_px, pixel_x, pixel_y (of the first camera) and "
                  "reflected (what the projector's white adds there)"},
                 {"VIEW-CAMERA-codes.exr",
-                 "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: 0 "
-                 "told, 1 masked, 2 dark, 3 saturated, 4 edge, 5 contradictory, 6 outside, 7 interreflection"}},
+                 "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: " + refusals()}},
       .exits = {{Exit::negative, "a view has no point"},
                 {Exit::quality,
                  "cameras, or a projector's columns and rows, contradict each other by more than three times "
