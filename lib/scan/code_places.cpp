@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace gonio::scan {
 namespace {
@@ -10,6 +11,9 @@ namespace {
 constexpr double least_spread = 0.02;  // px^2 of the projector, in each axis: codes that span a plane
 constexpr double rounding = 1.0 / 12;  // variance of what is rounded to whole numbers
 constexpr double enough = 12;          // pixels that need no neighbours
+constexpr int widest_gap = 4;          // pixels between those of one code: borders of stripes are refused
+constexpr int neighbours = 3;          // pixels to each side
+constexpr float near_code = 6;         // pixels of the projector
 constexpr double bent = 3;             // times a cell's own variance: a plane over its neighbours does not fit
 
 // Sums, with weights, over pixels (x, y) at distances (u, v) of their codes from a pixel of the projector.
@@ -106,17 +110,79 @@ ByCode by_code(const Codes& codes, int projector_width_px) {
   return sorted;
 }
 
-std::vector<Cell> cells_of(const Codes& codes, int projector_width_px) {
+// How many pixels about one tell a pixel of the projector next to its own.
+int support(const Codes& codes, std::uint32_t pixel) {
+  const auto width = static_cast<std::uint32_t>(codes.width);
+  const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+  int count = 0;
+  for (int v = std::max(0, y - neighbours); v <= std::min(codes.height - 1, y + neighbours); ++v)
+    for (int u = std::max(0, x - neighbours); u <= std::min(codes.width - 1, x + neighbours); ++u) {
+      const auto i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+      count += codes.told(i) && std::abs(codes.place[0][i] - codes.place[0][pixel]) < near_code &&
+               std::abs(codes.place[1][i] - codes.place[1][pixel]) < near_code;
+    }
+  return count;
+}
+
+// A box about pixels of one code that touch, but for gaps.
+struct Cluster {
+  int left = 0, right = 0, top = 0, bottom = 0, support = 0;
+  bool near(const Cluster& o) const {
+    return o.left - right <= widest_gap && left - o.right <= widest_gap && o.top - bottom <= widest_gap &&
+           top - o.bottom <= widest_gap;
+  }
+  void join(const Cluster& o) {
+    left = std::min(left, o.left), right = std::max(right, o.right);
+    top = std::min(top, o.top), bottom = std::max(bottom, o.bottom);
+  }
+};
+
+// Of the pixels of one code those that are ambiguous are moved to the end; how many are left.
+std::size_t unambiguous(const Codes& codes, std::span<std::uint32_t> pixels) {
+  const auto width = static_cast<std::uint32_t>(codes.width);
+  const auto point = [width](std::uint32_t p) {
+    const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
+    return Cluster{x, x, y, y};
+  };
+  std::vector<Cluster> clusters{point(pixels[0])};
+  for (const std::uint32_t p : pixels.subspan(1)) {
+    Cluster own = point(p);
+    if (clusters.size() == 1 && clusters[0].near(own)) {
+      clusters[0].join(own);
+      continue;
+    }
+    std::erase_if(clusters, [&own](const Cluster& c) { return own.near(c) && (own.join(c), true); });
+    clusters.push_back(own);
+  }
+  if (clusters.size() == 1) return pixels.size();
+  const auto of = [&](std::uint32_t p) -> Cluster& {
+    const Cluster own = point(p);
+    return *std::ranges::find_if(clusters, [&own](const Cluster& c) {
+      return c.left <= own.left && own.left <= c.right && c.top <= own.top && own.top <= c.bottom;
+    });
+  };
+  for (const std::uint32_t p : pixels) of(p).support = std::max(of(p).support, support(codes, p));
+  const Cluster& best = *std::ranges::max_element(clusters, {}, &Cluster::support);
+  const bool clear =
+      std::ranges::all_of(clusters, [&](const Cluster& c) { return &c == &best || best.support >= 2 * c.support; });
+  const auto end = std::ranges::stable_partition(pixels, [&](std::uint32_t p) { return clear && &of(p) == &best; });
+  return pixels.size() - end.size();
+}
+
+std::vector<Cell> cells_of(const Codes& codes, int projector_width_px, std::size_t* ambiguous) {
   const std::vector<float>&columns = codes.place[0], &rows = codes.place[1];
-  const ByCode sorted = by_code(codes, projector_width_px);
+  ByCode sorted = by_code(codes, projector_width_px);
   std::vector<Cell> cells;
   const auto width = static_cast<std::uint32_t>(codes.width);
   for (std::size_t code = 0; code + 1 < sorted.first.size(); ++code) {
-    if (sorted.first[code] == sorted.first[code + 1]) continue;
+    const std::span<std::uint32_t> all(&sorted.pixels[0] + sorted.first[code],
+                                       &sorted.pixels[0] + sorted.first[code + 1]);
+    const std::size_t kept = all.empty() ? 0 : unambiguous(codes, all);
+    if (ambiguous != nullptr) *ambiguous += all.size() - kept;
+    if (kept == 0) continue;
     Cell& cell = cells.emplace_back();
     cell.code = static_cast<std::int64_t>(code);
-    for (std::uint32_t k = sorted.first[code]; k < sorted.first[code + 1]; ++k) {
-      const std::uint32_t i = sorted.pixels[k];
+    for (const std::uint32_t i : all.first(kept)) {
       cell.sums.add(columns[i] - std::round(columns[i]), rows[i] - std::round(rows[i]), i % width, i / width);
       cell.reflected += codes.reflected[i];
     }
@@ -126,8 +192,22 @@ std::vector<Cell> cells_of(const Codes& codes, int projector_width_px) {
 
 }  // namespace
 
-std::vector<CodePlace> places_of(const Codes& codes, int projector_width_px) {
-  const std::vector<Cell> cells = cells_of(codes, projector_width_px);
+std::vector<std::uint32_t> ambiguous_pixels(const Codes& codes, int projector_width_px) {
+  std::vector<std::uint32_t> all;
+  if (codes.place[0].empty() || codes.place[1].empty()) return all;
+  ByCode sorted = by_code(codes, projector_width_px);
+  for (std::size_t code = 0; code + 1 < sorted.first.size(); ++code) {
+    if (sorted.first[code] == sorted.first[code + 1]) continue;
+    const std::span<std::uint32_t> own(&sorted.pixels[0] + sorted.first[code],
+                                       &sorted.pixels[0] + sorted.first[code + 1]);
+    const auto wrong = own.subspan(unambiguous(codes, own));
+    all.insert(all.end(), wrong.begin(), wrong.end());
+  }
+  return all;
+}
+
+std::vector<CodePlace> places_of(const Codes& codes, int projector_width_px, std::size_t* ambiguous) {
+  const std::vector<Cell> cells = cells_of(codes, projector_width_px, ambiguous);
   std::vector<CodePlace> places;
   std::array<std::size_t, 3> first{};  // of the rows above, here and below: the cell at or beyond the column before
   for (const Cell& cell : cells) {

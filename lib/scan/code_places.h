@@ -18,6 +18,12 @@ struct CodePlace {
 // Ascending codes. Both axes must be told. A pixel of the projector is seen by a few of the camera, of which a Gray
 // code tells no more than that: its middle is that of a plane, pixel over code, through it and its eight neighbours,
 // unless these do not lie on one (an edge of the scene); then the centroid.
-std::vector<CodePlace> places_of(const Codes& codes, int projector_width_px);
+// Ambiguous pixels (below) do not count, and are counted.
+std::vector<CodePlace> places_of(const Codes& codes, int projector_width_px, std::size_t* ambiguous = nullptr);
+
+// Pixels that tell a pixel of the projector which others, apart from them, tell as well. Of such clusters the one is
+// right whose neighbours tell neighbouring pixels of the projector twice as often as about any other; all are ambiguous
+// where there is none. Nothing where one axis alone is told.
+std::vector<std::uint32_t> ambiguous_pixels(const Codes& codes, int projector_width_px);
 
 }  // namespace gonio::scan

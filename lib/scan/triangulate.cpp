@@ -5,9 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "geom/mat3_inverse.h"
 #include "scan/code_places.h"
+#include "stats/distributions.h"
 #include "stats/intervals.h"
 
 namespace gonio::scan {
@@ -16,18 +18,22 @@ namespace {
 constexpr int most_steps = 12;
 constexpr double step_m = 1e-5;  // of finite differences, per metre of depth
 constexpr std::size_t points_at_once = 512;
-constexpr double chi_square_median = 0.45493642311957275;  // of one degree of freedom
-const std::string contradictory(refusal_names[static_cast<std::size_t>(Refusal::contradictory)]);
+constexpr double exact_px2 = 1e-6;  // of the projector's own pixel
+
+std::string reason(Refusal refusal) {
+  return std::string(refusal_names[static_cast<std::size_t>(refusal)]);
+}
 
 void count_refusals(const Codes& codes, Cloud& cloud) {
   for (const Refusal r : codes.refusal)
     if (r != Refusal::none) ++cloud.refused[std::string(refusal_names[static_cast<std::size_t>(r)])];
 }
 
-// `chi_square`: of what its pictures contradict each other by, one degree of freedom; below zero: they cannot.
+// `chi_square`: of what its pictures contradict each other by; below zero: they cannot.
 struct Solved {
   ScanPoint point;
   double chi_square = -1;
+  std::size_t degrees = 1;
 };
 
 // Of the largest eigenvalue of v, m + 2 p cos(phi / 3), cos(phi) = det((v - m) / p) / 2, m a third of the trace
@@ -50,17 +56,20 @@ void gather(std::size_t count, double most_px, const Body& body, Cloud& cloud) {
     for (std::size_t i = n * points_at_once; i < std::min(count, (n + 1) * points_at_once); ++i) found[i] = body(i);
   });
   std::size_t lost = 0;
-  std::vector<double> chi_squares;
+  std::array<double, 2 * most_devices> medians{};
+  for (std::size_t degrees = 1; degrees < medians.size(); ++degrees)
+    medians[degrees] = stats::chi2_quantile(0.5, static_cast<double>(degrees));
+  std::vector<double> chi_squares;  // over their median
   for (const std::optional<Solved>& solved : found) {
     if (!solved || solved->point.reprojection_px > most_px) {
       ++lost;
       continue;
     }
     cloud.points.push_back(solved->point);
-    if (solved->chi_square >= 0) chi_squares.push_back(solved->chi_square);
+    if (solved->chi_square >= 0) chi_squares.push_back(solved->chi_square / medians[solved->degrees]);
   }
-  if (lost > 0) cloud.refused[contradictory] += lost;
-  if (!chi_squares.empty()) cloud.epipolar_chi_square = stats::median(chi_squares) / chi_square_median;
+  if (lost > 0) cloud.refused[reason(Refusal::contradictory)] += lost;
+  if (!chi_squares.empty()) cloud.epipolar_chi_square = stats::median(chi_squares);
   const double factor = std::max(1.0, cloud.epipolar_chi_square);
   parallel_for(0, (cloud.points.size() + points_at_once - 1) / points_at_once, [&](std::size_t n) {
     for (std::size_t i = n * points_at_once; i < std::min(cloud.points.size(), (n + 1) * points_at_once); ++i) {
@@ -145,44 +154,58 @@ std::optional<Solved> on_ray(const Codes& codes, std::size_t i, const Station& c
   if (code.weight[0] > 0 && code.weight[1] > 0) {
     point.reprojection_px = norm(off) / std::sqrt(2.0);
     solved.chi_square = code.weight[0] * off.x * off.x + code.weight[1] * off.y * off.y;
+    point.across_px =
+        static_cast<float>(std::copysign(point.reprojection_px, std::abs(off.y) > std::abs(off.x) ? off.y : off.x));
   }
   return solved;
 }
 
-// Two rays' common point, by the pixels' distances over their sigmas.
-struct Pair {
-  const CodePlace *first = nullptr, *second = nullptr;
+// Devices' rays' common point, by the pixels' distances over their sigmas.
+struct Seen {
+  const Station* station = nullptr;
+  const Rigid<frame::Camera, frame::Rig>* from_rig = nullptr;
+  Vec2 pixel, variance_px2;
+};
+struct Group {
+  std::array<Seen, most_devices> seen;
+  std::size_t count = 0, camera = 0;  // the first camera
+  float reflected = 0;
 };
 
-std::optional<Solved> common_point(const Pair& pair, const Station& a, const Station& b) {
-  const Station* stations[2] = {&a, &b};
-  const CodePlace* places[2] = {pair.first, pair.second};
-  const Rigid<frame::Camera, frame::Rig> from_rig[2] = {inverse(a.rig_from_camera), inverse(b.rig_from_camera)};
+// The middle of the least distance between two rays; depth along the first.
+std::optional<std::pair<Vec3, double>> between(const Seen& a, const Seen& b) {
+  const Seen* both[2] = {&a, &b};
   Vec3 origins[2], directions[2];
   for (int k = 0; k < 2; ++k) {
-    const camera::Ray ray = stations[k]->lens.ray(places[k]->pixel);
-    origins[k] = stations[k]->rig_from_camera * ray.origin_m;
-    directions[k] = stations[k]->rig_from_camera.rotate(ray.direction);
+    const camera::Ray ray = both[k]->station->lens.ray(both[k]->pixel);
+    origins[k] = both[k]->station->rig_from_camera * ray.origin_m;
+    directions[k] = both[k]->station->rig_from_camera.rotate(ray.direction);
   }
-  // The middle of the rays' least distance.
   const Vec3 apart = origins[1] - origins[0];
   const double c = dot(directions[0], directions[1]), d = 1 - c * c;
   if (!(d > 1e-12)) return std::nullopt;
   const double s = (dot(apart, directions[0]) - c * dot(apart, directions[1])) / d,
                t = (c * dot(apart, directions[0]) - dot(apart, directions[1])) / d;
   if (!(s > 0 && t > 0)) return std::nullopt;
+  return std::pair{0.5 * (origins[0] + s * directions[0] + origins[1] + t * directions[1]), s};
+}
+
+std::optional<Solved> common_point(const Group& group) {
+  const auto start = between(group.seen[0], group.seen[1]);
+  if (!start) return std::nullopt;
   Solved solved;
-  Vec3 x = 0.5 * (origins[0] + s * directions[0] + origins[1] + t * directions[1]);
+  auto [x, s] = *start;
   // The slopes once: the start is within a fraction of a pixel.
   Mat3 normal{{}};
-  Vec2 slopes[2][3], weights[2];
-  for (int k = 0; k < 2; ++k) weights[k] = {1 / places[k]->variance_px2.x, 1 / places[k]->variance_px2.y};
+  Vec2 slopes[most_devices][3], weights[most_devices];
   const double h = step_m * s;
-  for (int k = 0; k < 2; ++k) {
-    const auto here = stations[k]->lens.project(from_rig[k] * x);
+  for (std::size_t k = 0; k < group.count; ++k) {
+    const Seen& own = group.seen[k];
+    weights[k] = {1 / own.variance_px2.x, 1 / own.variance_px2.y};
+    const auto here = own.station->lens.project(*own.from_rig * x);
     for (int i = 0; i < 3; ++i) {
       const Vec3 beside = x + h * Vec3{i == 0 ? 1.0 : 0, i == 1 ? 1.0 : 0, i == 2 ? 1.0 : 0};
-      const auto moved = stations[k]->lens.project(from_rig[k] * beside);
+      const auto moved = own.station->lens.project(*own.from_rig * beside);
       if (!here || !moved) return std::nullopt;
       slopes[k][i] = (*moved - *here) * (1 / h);
     }
@@ -194,21 +217,26 @@ std::optional<Solved> common_point(const Pair& pair, const Station& a, const Sta
   if (!std::isfinite(covariance(0, 0))) return std::nullopt;
   for (int step = 0; step < 4; ++step) {
     Vec3 right;
-    double chi_square = 0, square = 0;
-    for (int k = 0; k < 2; ++k) {
-      const auto here = stations[k]->lens.project(from_rig[k] * x);
+    double chi_square = 0, square = 0, side = 0;
+    for (std::size_t k = 0; k < group.count; ++k) {
+      const auto here = group.seen[k].station->lens.project(*group.seen[k].from_rig * x);
       if (!here) return std::nullopt;
-      const Vec2 off = places[k]->pixel - *here;
+      const Vec2 off = group.seen[k].pixel - *here;
       const Vec2 weighed{weights[k].x * off.x, weights[k].y * off.y};
       chi_square += dot(weighed, off), square += dot(off, off);
+      if (k == 0) side = std::abs(off.y) > std::abs(off.x) ? off.y : off.x;
       right += Vec3{dot(slopes[k][0], weighed), dot(slopes[k][1], weighed), dot(slopes[k][2], weighed)};
     }
-    solved.chi_square = chi_square, solved.point.reprojection_px = std::sqrt(0.5 * square);
+    solved.chi_square = chi_square;
+    solved.point.reprojection_px = std::sqrt(square / static_cast<double>(group.count));
+    solved.point.across_px = static_cast<float>(std::copysign(solved.point.reprojection_px, side));
     const Vec3 move = covariance * right;
     x += move;
     if (norm(move) < 1e-7 * s) break;
   }
-  solved.point.position_m = x, solved.point.pixel = places[0]->pixel, solved.point.reflected = places[0]->reflected;
+  solved.degrees = 2 * group.count - 3;
+  solved.point.position_m = x, solved.point.pixel = group.seen[0].pixel, solved.point.reflected = group.reflected;
+  solved.point.camera = static_cast<std::uint8_t>(group.camera);
   solved.point.covariance = {covariance(0, 0), covariance(0, 1), covariance(0, 2),
                              covariance(1, 1), covariance(1, 2), covariance(2, 2)};
   return solved;
@@ -219,33 +247,72 @@ std::optional<Solved> common_point(const Pair& pair, const Station& a, const Sta
 Cloud points_of_projector(const Codes& codes, const Station& camera, const Station& projector, double most_px) {
   Cloud cloud;
   count_refusals(codes, cloud);
+  std::vector<std::uint8_t> ambiguous(codes.refusal.size());
+  for (const std::uint32_t i : ambiguous_pixels(codes, projector.lens.width_px()))
+    ambiguous[i] = 1, ++cloud.refused[reason(Refusal::ambiguous)];
   std::vector<std::size_t> told;
   for (std::size_t i = 0; i < codes.refusal.size(); ++i)
-    if (codes.told(i)) told.push_back(i);
+    if (codes.told(i) && ambiguous[i] == 0) told.push_back(i);
   gather(
       told.size(), most_px, [&](std::size_t n) { return on_ray(codes, told[n], camera, projector); }, cloud);
   return cloud;
 }
 
+Cloud points_of_rig(std::span<const Look> cameras, const Station* projector, int projector_width_px, double most_px) {
+  if (cameras.size() + (projector != nullptr) > most_devices)
+    throw Error(Exit::usage, "--camera", "is given " + std::to_string(cameras.size()) + " times",
+                "a rig of " + std::to_string(most_devices) + " devices at most");
+  Cloud cloud;
+  count_refusals(*cameras[0].codes, cloud);
+  std::vector<std::vector<CodePlace>> places(cameras.size());
+  std::vector<std::size_t> ambiguous(cameras.size());
+  parallel_for(0, cameras.size(),
+               [&](std::size_t k) { places[k] = places_of(*cameras[k].codes, projector_width_px, &ambiguous[k]); });
+  if (ambiguous[0] > 0) cloud.refused[reason(Refusal::ambiguous)] += ambiguous[0];
+  std::vector<Rigid<frame::Camera, frame::Rig>> from_rig;
+  for (const Look& look : cameras) from_rig.push_back(inverse(look.camera.rig_from_camera));
+  if (projector != nullptr) from_rig.push_back(inverse(projector->rig_from_camera));
+  // Of each pixel of the projector the places in all cameras that have it.
+  std::vector<std::array<const CodePlace*, most_devices>> sets;
+  std::vector<std::size_t> next(cameras.size());
+  while (true) {
+    std::int64_t code = -1;
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (next[k] < places[k].size() && (code < 0 || places[k][next[k]].code < code)) code = places[k][next[k]].code;
+    if (code < 0) break;
+    std::array<const CodePlace*, most_devices> set{};
+    std::size_t seen = projector != nullptr ? 1 : 0;
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (next[k] < places[k].size() && places[k][next[k]].code == code) set[k] = &places[k][next[k]++], ++seen;
+    if (seen > 1) sets.push_back(set);
+  }
+  cloud.matched = sets.size();
+  gather(
+      sets.size(), most_px,
+      [&](std::size_t n) {
+        Group group;
+        std::int64_t code = 0;
+        for (std::size_t k = 0; k < cameras.size(); ++k) {
+          const CodePlace* place = sets[n][k];
+          if (place == nullptr) continue;
+          if (group.count == 0) group.camera = k, group.reflected = place->reflected, code = place->code;
+          group.seen[group.count++] = {&cameras[k].camera, &from_rig[k], place->pixel, place->variance_px2};
+        }
+        if (projector != nullptr)
+          group.seen[group.count++] = {
+              projector, &from_rig.back(),
+              Vec2{static_cast<double>(code % projector_width_px), static_cast<double>(code / projector_width_px)},
+              Vec2{exact_px2, exact_px2}};
+        return common_point(group);
+      },
+      cloud);
+  return cloud;
+}
+
 Cloud points_of_cameras(const Codes& first, const Station& first_camera, const Codes& second,
                         const Station& second_camera, int projector_width_px, double most_px) {
-  Cloud cloud;
-  count_refusals(first, cloud);
-  std::vector<CodePlace> a, b;
-  parallel_for(0, 2, [&](std::size_t k) { (k == 0 ? a : b) = places_of(k == 0 ? first : second, projector_width_px); });
-  std::vector<Pair> pairs;
-  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-    if (i->code == j->code)
-      pairs.push_back({&*i++, &*j++});
-    else if (i->code < j->code)
-      ++i;
-    else
-      ++j;
-  }
-  cloud.matched = pairs.size();
-  gather(
-      pairs.size(), most_px, [&](std::size_t n) { return common_point(pairs[n], first_camera, second_camera); }, cloud);
-  return cloud;
+  const Look both[] = {{&first, first_camera}, {&second, second_camera}};
+  return points_of_rig(both, nullptr, projector_width_px, most_px);
 }
 
 }  // namespace gonio::scan
