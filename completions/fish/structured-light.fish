@@ -13,6 +13,8 @@ complete -c structured-light -l least-light -x -d 'Pixels that the projectors wh
 complete -c structured-light -l least-difference -x -d 'A bit and its inverse that differ by less, as a share of a full picture, are the border of a stripe, whatever their noise.'
 complete -c structured-light -l least-share -x -d 'The same, as a share of what white adds there.'
 complete -c structured-light -l least-sigmas -x -d 'The same, in standard deviations of the difference.'
+complete -c structured-light -l least-direct -x -d 'Of cosines: pixels that send back a smaller share of light straight, against the best tenth of the picture, lie on something translucent and are refused. 0: none.'
+complete -c structured-light -l keep-moved -d 'Keep pixels that saw something move.'
 complete -c structured-light -l keep-indirect -d 'Keep pixels that indirect light may have changed.'
 complete -c structured-light -l shape -x -a 'plane sphere' -d 'What all points lie on, where that is known: explain(1) asks of four clouds and more why they do not.'
 complete -c structured-light -l radius -x -d 'Of the sphere, calibrated.'

@@ -6,31 +6,15 @@
 #include <cmath>
 
 #include "geom/vector.h"
-#include "scan/mechanisms/projector_gamma.h"
 
 namespace gonio::scan {
 namespace {
 
-constexpr std::size_t places = 360, tiles = 64;
-constexpr double least_bend = 0.02, of_lens = 0.1, fewest_pixels = 1000;
+constexpr std::size_t places = 720, tiles = 64, harmonics = 60;
+constexpr double of_lens = 0.07, fewest_pixels = 1000;
 // Of gamma - 1: harmonics beyond the second that shifts cannot tell from it, four of them most.
 constexpr double step_rad = 0.02, least_slope = 0.05;  // of the found phase over the true one
 constexpr double of_four = 0.03, of_more = 0.005, least_sigma = 0.001;
-
-std::vector<double> errors_of_phase(double gamma, std::span<const double> shifts, const Mat3& solve) {
-  std::vector<double> off(places);
-  for (std::size_t k = 0; k < places; ++k) {
-    const double theta = 2 * pi * static_cast<double>(k) / places;
-    Vec3 sums;
-    for (const double s : shifts) {
-      const double v = equation::projector_gamma(std::max(0.0, 0.5 + 0.5 * std::cos(theta - s)), std::array{gamma});
-      sums += Vec3{v, v * std::cos(s), v * std::sin(s)};
-    }
-    const Vec3 fit = solve * sums;
-    off[k] = std::remainder(std::atan2(fit.z, fit.y) - theta, 2 * pi);
-  }
-  return off;
-}
 
 double at(const std::vector<double>& off, double theta) {
   const double turns = theta / (2 * pi), place = (turns - std::floor(turns)) * places;
@@ -39,11 +23,38 @@ double at(const std::vector<double>& off, double theta) {
   return off[k] * (1 - beyond) + off[(k + 1) % places] * beyond;
 }
 
-}  // namespace
-
-bool ProjectorGamma::bends() const {
-  return std::abs(gamma - 1) > std::max(3 * sigma, least_bend);
+// By the phase of the cosine that is sent: what the tone makes of it and lenses leave, over what they leave of it.
+std::vector<double> blurred(const ProjectorTone& tone, double left) {
+  std::vector<double> light(places), seen(places), cosines(places);
+  for (std::size_t k = 0; k < places; ++k) cosines[k] = std::cos(2 * pi * static_cast<double>(k) / places);
+  for (std::size_t k = 0; k < places; ++k) light[k] = tone.light(0.5 + 0.5 * cosines[k]);
+  for (std::size_t h = 1; h <= harmonics; ++h) {
+    double amplitude = 0;
+    for (std::size_t k = 0; k < places; ++k) amplitude += 2.0 / places * light[k] * cosines[h * k % places];
+    amplitude *= std::pow(left, static_cast<double>(h * h - 1));
+    for (std::size_t k = 0; k < places; ++k) seen[k] += amplitude * cosines[h * k % places];
+  }
+  return seen;
 }
+
+std::vector<double> errors_of_phase(const ProjectorTone& tone, std::span<const double> shifts, const Mat3& solve,
+                                    double left) {
+  std::vector<double> off(places);
+  const std::vector<double> light = blurred(tone, left);
+  for (std::size_t k = 0; k < places; ++k) {
+    const double theta = 2 * pi * static_cast<double>(k) / places;
+    Vec3 sums;
+    for (const double s : shifts) {
+      const double v = at(light, theta - s);
+      sums += Vec3{v, v * std::cos(s), v * std::sin(s)};
+    }
+    const Vec3 fit = solve * sums;
+    off[k] = std::remainder(std::atan2(fit.z, fit.y) - theta, 2 * pi);
+  }
+  return off;
+}
+
+}  // namespace
 
 bool in_equal_steps(std::span<const double> shifts) {
   double c = 0, s = 0, c2 = 0, s2 = 0;
@@ -84,9 +95,13 @@ std::optional<ProjectorGamma> gamma_of(const SecondHarmonic& seen) {
   return ProjectorGamma{gamma, std::hypot(chance, least_sigma, (four ? of_four : of_more) * (gamma - 1))};
 }
 
-BentPhase::BentPhase(const ProjectorGamma& gamma, std::span<const double> shifts, const Mat3& solve)
-    : off_(errors_of_phase(gamma.gamma, shifts, solve)),
-      off_above_(errors_of_phase(gamma.gamma + gamma.sigma, shifts, solve)) {
+BentPhase::BentPhase(const ProjectorTone& tone, std::span<const double> shifts, const Mat3& solve, double left)
+    : unknown_(places) {
+  for (const ProjectorTone& other : tone.varied()) {
+    const std::vector<double> off = errors_of_phase(other, shifts, solve, left);
+    if (off_.empty()) off_ = off;
+    for (std::size_t k = 0; k < places; ++k) unknown_[k] = std::hypot(unknown_[k], off[k] - off_[k]);
+  }
   double squares = 0;
   for (const double off : off_) squares += off * off;
   of_lens_ = of_lens * std::sqrt(squares / places);
@@ -99,7 +114,7 @@ BentPhase::True BentPhase::straightened(double found, double sigma) const {
     theta -= (theta + at(off_, theta) - found) / std::max(least_slope, slope);
   }
   const double slope = 1 + (at(off_, theta + step_rad) - at(off_, theta - step_rad)) / (2 * step_rad),
-               stretch = 1 / std::max(least_slope, slope), unknown = at(off_above_, theta) - at(off_, theta);
+               stretch = 1 / std::max(least_slope, slope), unknown = at(unknown_, theta);
   return {theta, stretch * std::hypot(sigma, unknown, of_lens_)};
 }
 

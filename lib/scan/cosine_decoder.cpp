@@ -25,6 +25,8 @@ constexpr double most_contradicting = 25,
 // turns their phases by a share of that, unless phases agree all the same; and it makes fine ones disagree.
 constexpr double turned_by_indirect = 0.05, agreeing = 8, disagreeing = 0.5;
 constexpr std::size_t pixels_at_once = 1 << 14, most_sampled = 20000;
+constexpr std::size_t tone_pixels = 4000, tone_shifts = 5;
+constexpr double tone_period_px = 24;  // at least: what lenses blur shows no levels
 
 // Sums over the shifts of one number of periods.
 struct ShiftSums {
@@ -32,6 +34,7 @@ struct ShiftSums {
   std::vector<double> shifts_rad;
   std::vector<float> of_all, with_cos, with_sin;
   std::vector<std::uint8_t> spoiled;
+  ToneReadings tone{};                            // of some pixels, where shifts tell the projector's levels
   std::vector<float> with_cos_2{}, with_sin_2{};  // of twice the shifts, where these tell the projector's exponent
 };
 
@@ -68,6 +71,7 @@ class CosineDecoder {
       std::ranges::sort(all, {}, &ShiftSums::periods);
       if (!noise_known_) find_noise(all);
       find_gamma(all);
+      find_levels(all);
       places(axis, all);
       if (in_equal_steps(all.back().shifts_rad)) keep_means(all);
     }
@@ -89,16 +93,18 @@ class CosineDecoder {
       if (s.what == What::cosine && s.axis == axis) frames[s.periods].push_back(f);
     }
     std::vector<ShiftSums> all;
-    bool told = false;  // coarse cosines tell the projector's exponent: a lens takes least from their harmonics
+    // Coarse cosines tell the projector's exponent and levels: a lens takes least from their harmonics.
+    bool told = false, tone_told = tone_known_ || !r_.levels;
     for (const auto& [periods, own] : frames) {
-      const bool tells = !told && own.size() >= 4;
-      all.push_back(sums_of(periods, own, tells));
-      told = told || tells;
+      const bool tells = !told && own.size() >= 4, tells_tone = !tone_told && own.size() >= tone_shifts &&
+                                                                r_.sequence.size(axis) >= tone_period_px * periods;
+      all.push_back(sums_of(periods, own, tells, tells_tone));
+      told = told || tells, tone_told = tone_told || tells_tone;
     }
     return all;
   }
 
-  ShiftSums sums_of(double periods, const std::vector<std::size_t>& frames, bool harmonics) const {
+  ShiftSums sums_of(double periods, const std::vector<std::size_t>& frames, bool harmonics, bool tone) const {
     const std::size_t pixels = codes_.refusal.size();
     ShiftSums s;
     s.periods = periods;
@@ -114,11 +120,47 @@ class CosineDecoder {
         s.of_all[i] += v, s.with_cos[i] += c * v, s.with_sin[i] += sine * v;
         s.spoiled[i] = static_cast<std::uint8_t>(s.spoiled[i] | (frame.full(i) ? 1 : 0));
       }
+      for (std::size_t i = tone_first(); tone && i < pixels; i += tone_stride()) s.tone.readings.push_back(frame.at(i));
       const auto c2 = static_cast<float>(std::cos(2 * shift)), s2 = static_cast<float>(std::sin(2 * shift));
       for (std::size_t i = 0; harmonics && i < pixels; ++i)
         s.with_cos_2[i] += c2 * frame.at(i), s.with_sin_2[i] += s2 * frame.at(i);
     }
     return s;
+  }
+
+  std::size_t tone_stride() const { return 1 + codes_.refusal.size() / tone_pixels; }
+  std::size_t tone_first() const { return tone_stride() / 2; }
+
+  // Readings came frame by frame, of pixels that may be dark.
+  ToneReadings tone_of(const ShiftSums& s) const {
+    const std::size_t pixels = codes_.refusal.size(), shifts = s.shifts_rad.size(),
+                      all = s.tone.readings.size() / shifts, width = static_cast<std::size_t>(codes_.width);
+    const Mat3 solve = shift_fit(s.shifts_rad);
+    ToneReadings seen{.shifts_rad = s.shifts_rad, .readings = {}, .sigmas = {}, .tiles = {}};
+    for (std::size_t n = 0, i = tone_first(); n < all; ++n, i += tone_stride()) {
+      const Phase p = phase_of(solve, s.of_all[i], s.with_cos[i], s.with_sin[i], codes_.noise);
+      if (!codes_.told(i) || s.spoiled[i] != 0 || p.amplitude <= least_of_noise * p.amplitude_sigma) continue;
+      for (std::size_t k = 0; k < shifts; ++k) seen.readings.push_back(s.tone.readings[k * all + n]);
+      const double variance = photograph::noise_variance(codes_.noise, std::max(0.0, p.mean));
+      seen.sigmas.push_back(static_cast<float>(std::sqrt(std::max(1e-12, variance))));
+      seen.tiles.push_back(static_cast<std::uint32_t>(i * 8 / pixels * 8 + i % width * 8 / width));
+    }
+    return seen;
+  }
+
+  // As find_gamma(), and after it: with levels, an exponent is another.
+  void find_levels(std::vector<ShiftSums>& all) {
+    const auto s = std::ranges::find_if(all, [](const ShiftSums& own) { return !own.tone.readings.empty(); });
+    if (s == all.end()) return;
+    tone_known_ = true;
+    const bool stated = r_.gamma > 0;
+    const auto found =
+        flat_tone(tone_of(*s), stated ? std::optional(FlatLevel{codes_.gamma, codes_.gamma_sigma}) : std::nullopt);
+    if (found) {
+      codes_.below = found->below, codes_.above = found->above;
+      codes_.gamma = found->gamma, codes_.gamma_sigma = found->gamma_sigma;
+    }
+    s->tone = {};
   }
 
   // Means of two numbers of periods must be equal.
@@ -171,11 +213,10 @@ class CosineDecoder {
     if (codes_.reflected.empty()) codes_.reflected.assign(pixels, 0);
     std::vector<Mat3> inverses;
     bent_.clear();
-    const ProjectorGamma gamma{codes_.gamma, codes_.gamma_sigma};
-    for (const ShiftSums& s : all) {
-      inverses.push_back(shift_fit(s.shifts_rad));
-      if (gamma.bends()) bent_.emplace_back(gamma, s.shifts_rad, inverses.back());
-    }
+    const ProjectorTone tone{codes_.gamma, codes_.gamma_sigma, codes_.below, codes_.above};
+    for (const ShiftSums& s : all) inverses.push_back(shift_fit(s.shifts_rad));
+    for (std::size_t f = 0; tone.bends() && f < all.size(); ++f)
+      bent_.emplace_back(tone, all[f].shifts_rad, inverses[f], usual_amplitude(all, inverses, f));
     usual_share_ = usual_share(all, inverses);
     parallel_for(0, (pixels + pixels_at_once - 1) / pixels_at_once, [&](std::size_t n) {
       std::vector<Phase> phases(all.size());
@@ -253,9 +294,11 @@ class CosineDecoder {
     return phases.back().amplitude / largest;
   }
 
-  // What the best tenth of the picture has.
-  double usual_share(const std::vector<ShiftSums>& all, const std::vector<Mat3>& inverses) const {
-    std::vector<double> shares;
+  // of(phases) of some pixels, ascending.
+  template <class Of>
+  std::vector<double> sampled(const std::vector<ShiftSums>& all, const std::vector<Mat3>& inverses,
+                              const Of& of) const {
+    std::vector<double> values;
     std::vector<Phase> phases(all.size());
     const std::size_t pixels = codes_.refusal.size(), stride = 1 + pixels / most_sampled;
     for (std::size_t i = 0; i < pixels; i += stride) {
@@ -264,12 +307,23 @@ class CosineDecoder {
         phases[f] = phase_of(inverses[f], all[f].of_all[i], all[f].with_cos[i], all[f].with_sin[i], codes_.noise);
         counts = all[f].spoiled[i] == 0 && phases[f].amplitude > least_of_noise * phases[f].amplitude_sigma;
       }
-      if (counts) shares.push_back(share_of_finest(phases));
+      if (counts) values.push_back(of(phases));
     }
-    if (shares.empty()) return 0;
-    const auto best = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() * 9 / 10);
-    std::ranges::nth_element(shares, best);
-    return *best;
+    std::ranges::sort(values);
+    return values;
+  }
+
+  // What the best tenth of the picture has.
+  double usual_share(const std::vector<ShiftSums>& all, const std::vector<Mat3>& inverses) const {
+    const std::vector<double> shares = sampled(all, inverses, share_of_finest);
+    return shares.empty() ? 0 : shares[shares.size() * 9 / 10];
+  }
+
+  // Over that of the fewest periods, by the median.
+  double usual_amplitude(const std::vector<ShiftSums>& all, const std::vector<Mat3>& inverses, std::size_t f) const {
+    const std::vector<double> ratios =
+        sampled(all, inverses, [f](const std::vector<Phase>& p) { return p[f].amplitude / p[0].amplitude; });
+    return ratios.empty() ? 1 : std::min(1.0, ratios[ratios.size() / 2]);
   }
 
   // Means over shifts that differ, from each other and from those of the axis before.
@@ -299,7 +353,7 @@ class CosineDecoder {
   const DecodeRequest& r_;
   const FrameReader& read_;
   Codes& codes_;
-  bool noise_known_ = false;
+  bool noise_known_ = false, tone_known_ = false;  // tone: that its levels were looked for
   double usual_share_ = 0;
   std::vector<float> means_;  // over the shifts of the axis before, in equal steps
   double shifts_of_means_ = 0;

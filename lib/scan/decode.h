@@ -24,7 +24,8 @@
 // say, by their variances.
 //
 // A projector that is not linear bends cosines; four shifts and more tell its exponent, and phases are straightened
-// (bent_phase.h).
+// (bent_phase.h). Five and more tell whether it shows all above a level of what is sent alike, or all below one, and
+// phases are straightened for that (projector_tone.h).
 //
 // Motion: a bit and its inverse light every pixel of the projector once, as white and black do, and cosines in equal
 // steps light all of them half, whatever their number of periods: whatever way light takes, these sums are the same of
@@ -48,6 +49,7 @@
 #include <vector>
 
 #include "manifest/noise.h"
+#include "scan/projector_tone.h"
 #include "scan/sequence.h"
 
 namespace gonio::scan {
@@ -96,6 +98,7 @@ struct Codes {
   bool whole = false;                              // places are stripes of a Gray code
   manifest::Noise noise{};                         // as stated, or as found
   double gamma = 1, gamma_sigma = 0;               // of the projector, by its cosines; sigma 0: not told
+  std::optional<FlatLevel> below, above;           // which it shows all alike (projector_tone.h)
   bool told(std::size_t pixel) const { return refusal[pixel] == Refusal::none; }
 };
 
@@ -113,6 +116,7 @@ struct DecodeRequest {
   double least_share = 0.05;    // of what white adds, for the same
   double least_sigmas = 2;      // of its noise, for the same
   double least_direct = 0.25;   // share of light that comes straight back; less is subsurface
+  bool levels = true;           // look for what the projector shows alike
   bool motion = true;           // refuse what moved
   bool indirect = true;         // refuse what light from other parts of the scene may have made another
   bool contradictions = true;   // refuse phases that do not agree on a place; else the best is taken

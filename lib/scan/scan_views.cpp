@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "io/grey.h"
 #include "manifest/document.h"
@@ -156,6 +157,17 @@ CameraFrame read_frame(const Document& document, std::size_t image, int width, i
   return frame;
 }
 
+namespace {
+
+void warn_of_level(const std::string& camera, const char* side, const std::optional<FlatLevel>& level) {
+  if (!level) return;
+  log(LogLevel::warning, format("camera %s: the projector shows all %s %.3g +- %.2g of what is sent alike; turn its "
+                                "contrast down. Phases are straightened for it",
+                                camera.c_str(), side, level->level, level->sigma));
+}
+
+}  // namespace
+
 Codes codes_of(const Document& document, const std::string& projection, const Frames& frames, DecodeRequest decoding) {
   decoding.sequence = sequence_of(document, projection);
   decoding.read = [&](std::size_t frame) {
@@ -172,7 +184,10 @@ Codes codes_of(const Document& document, const std::string& projection, const Fr
     if (gamma != use->second.parameters.end() && gamma->second.given()) decoding.gamma = gamma->second.scalar();
     if (sigma != use->second.sigma.end() && !sigma->second.empty()) decoding.gamma_sigma = sigma->second[0];
   }
-  return decode(decoding);
+  Codes codes = decode(decoding);
+  const std::string& camera = document.images[frames[0]].camera;
+  warn_of_level(camera, "above", codes.above), warn_of_level(camera, "below", codes.below);
+  return codes;
 }
 
 }  // namespace gonio::scan

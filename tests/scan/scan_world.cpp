@@ -87,7 +87,10 @@ scan::CameraFrame Recorder::operator()(std::size_t frame) const {
   const bool of_rows = sequence_.frames[frame].axis == scan::Axis::row;
   std::vector<double> shown;
   for (int u = 0; u < (of_rows ? sequence_.height_px : sequence_.width_px); ++u)
-    shown.push_back(std::pow(scan::light_at(sequence_, frame, of_rows ? 0 : u, of_rows ? u : 0), w.gamma) / places);
+    shown.push_back(
+        std::pow(std::clamp(scan::light_at(sequence_, frame, of_rows ? 0 : u, of_rows ? u : 0), w.dark, w.bright),
+                 w.gamma) /
+        places);
   scan::CameraFrame f;
   for (std::size_t i = 0; i < static_cast<std::size_t>(width_ * height_); ++i) {
     double light = 0;

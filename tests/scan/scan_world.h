@@ -30,6 +30,7 @@ struct ScanWorld {
   double white = 0.7, ambient = 0.05;  // what the camera reads, 1: full
   double gain = 8000, read = 0.002;    // electrons at 1; of 1
   double gamma = 1;                    // of the projector
+  double dark = 0, bright = 1;         // levels of what is sent beyond which it shows all alike
   int bits = 0;                        // of codes; 0: floats
   int across = 5;                      // places of a pixel that light is summed over, a side
   std::uint64_t seed = 1;
