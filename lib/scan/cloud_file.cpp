@@ -1,6 +1,8 @@
 // See cloud_file.h.
 #include "scan/cloud_file.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "geom/covariance.h"
 #include "io/ply.h"
@@ -17,7 +19,16 @@ const io::PlyWish columns{.properties = {"sigma", "reprojection_px", "pixel_x", 
 void write_cloud(const std::filesystem::path& path, const Cloud& cloud,
                  const Rigid<frame::World, frame::Rig>& world_from_rig) {
   io::TriangleMesh mesh;
-  mesh.properties.resize(columns.properties.size());
+  io::PlyWish wish = columns;
+  const bool several = std::ranges::any_of(cloud.points, [](const ScanPoint& p) { return p.camera != 0; });
+  const std::size_t colour_at = wish.properties.size(), camera_at = colour_at + (cloud.colours.empty() ? 0 : 3);
+  if (!cloud.colours.empty()) wish.properties.insert(wish.properties.end(), {"red", "green", "blue"});
+  if (several) wish.properties.push_back("camera");
+  mesh.properties.resize(wish.properties.size());
+  for (const std::array<float, 3>& colour : cloud.colours)
+    for (std::size_t k = 0; k < 3; ++k) mesh.properties[colour_at + k].push_back(colour[k]);
+  for (std::size_t i = 0; several && i < cloud.points.size(); ++i)
+    mesh.properties[camera_at].push_back(cloud.points[i].camera);
   const Mat3 turn = matrix_of(world_from_rig.rotation);
   for (const ScanPoint& point : cloud.points) {
     mesh.positions_m.push_back(world_from_rig * point.position_m);
@@ -26,7 +37,7 @@ void write_cloud(const std::filesystem::path& path, const Cloud& cloud,
     const std::array<double, 6> v = turned_covariance(turn, point.covariance);
     for (std::size_t k = 0; k < v.size(); ++k) mesh.properties[covariance_at + k].push_back(static_cast<float>(v[k]));
   }
-  io::write_ply(path, mesh, columns);
+  io::write_ply(path, mesh, wish);
 }
 
 std::vector<ScanPoint> read_cloud(const std::filesystem::path& path,

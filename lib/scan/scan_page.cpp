@@ -17,8 +17,9 @@
 namespace gonio::scan {
 namespace {
 
-constexpr int widest = 640, finest_grid = 160;  // pixels of a picture; cells of the surface along the longer side
-constexpr float torn = 6;                       // times the usual step in depth between two cells: no surface there
+constexpr int widest = 640, finest_grid = 160,
+              residual_cells = 120;  // pixels of a picture; cells of the surface along the longer side
+constexpr float torn = 6;            // times the usual step in depth between two cells: no surface there
 
 // Colours that the colour-blind tell apart (Okabe & Ito 2008), in the order of Refusal.
 struct RefusalColour {
@@ -154,6 +155,35 @@ report::ViewedMesh surface_of(const Cloud& cloud, const Station& first, int widt
   return mesh;
 }
 
+// What a point's pictures contradict each other by, cell by cell of the first camera's picture: the mean.
+report::Figure residuals_of(const Cloud& cloud, int width, int height) {
+  const int cell = std::max(1, (width + residual_cells - 1) / residual_cells), across = (width + cell - 1) / cell,
+            down = (height + cell - 1) / cell;
+  std::vector<double> sum(static_cast<std::size_t>(across * down)), count(sum.size()), sizes;
+  for (const ScanPoint& p : cloud.points) {
+    if (p.across_px == 0 || p.camera != 0) continue;
+    const int x = static_cast<int>(p.pixel.x + 0.5) / cell, y = static_cast<int>(p.pixel.y + 0.5) / cell;
+    if (x < 0 || y < 0 || x >= across || y >= down) continue;
+    const auto i = static_cast<std::size_t>(y * across + x);
+    sum[i] += double{p.across_px}, ++count[i], sizes.push_back(std::abs(double{p.across_px}));
+  }
+  if (sizes.empty()) return {};
+  const double full = std::max(1e-6, 2 * stats::median(sizes));
+  io::Image picture(across, down, {"R", "G", "B"});
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const report::Colour c =
+        count[i] > 0 ? report::signed_colour(sum[i] / count[i] / full) : report::Colour{0.88f, 0.88f, 0.88f};
+    for (std::size_t k = 0; k < 3; ++k) picture.data[3 * i + k] = c[k];
+  }
+  return {.png = io::encode_png(picture),
+          .title = "What should meet and does not",
+          .caption =
+              "How far the first camera saw points off where all pictures together put them, mean of a cell: red "
+              "on one side, blue on the other, full colour at " +
+              report::number_text(full, 2) +
+              " px. Noise is speckle; what goes smoothly over the picture is the rig, or a lens."};
+}
+
 report::Figure points_of(const Cloud& cloud, const Station& first, int width, int height, const std::string& name,
                          double largest_mm) {
   report::MeshView view;
@@ -203,6 +233,7 @@ void ScanPage::add(const std::string& view, const std::vector<std::string>& came
   const double largest =
       sigmas.empty() ? 1 : sigmas[static_cast<std::size_t>(0.95 * static_cast<double>(sigmas.size() - 1))];
   if (!cloud.points.empty()) v.points = points_of(cloud, first, codes[0].width, codes[0].height, view, largest);
+  v.residuals = residuals_of(cloud, codes[0].width, codes[0].height);
   views_.push_back(std::move(v));
 }
 
@@ -218,6 +249,7 @@ std::string ScanPage::html() const {
     page.section(v.name);
     page.key_numbers(v.numbers);
     if (!v.points.svg.empty()) page.figures({v.points}, 700);
+    if (!v.residuals.png.empty()) page.figures({v.residuals}, 420);
     page.table(v.refused);
     for (std::size_t c = 0; c < v.figures.size(); ++c) {
       page.subsection("Camera " + v.refused.rows[c][0]);

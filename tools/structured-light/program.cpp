@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "scan/decode.h"
 #include "scan/scan_document.h"
+#include "scan/triangulate.h"
 #include "tools/structured-light/options.h"
 #include "tools/structured-light/pattern.h"
 
@@ -43,9 +44,11 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   if (!request.projector.empty() && std::ranges::find(known, request.projector) == known.end())
     throw Error(Exit::usage, "--projector", request.projector + " is none of the manifest's cameras",
                 "a projector is calibrated as a camera of the rig");
-  if (request.projector.empty() ? request.cameras.size() != 2 : request.cameras.size() != 1)
+  const std::size_t devices = request.cameras.size() + (request.projector.empty() ? 0 : 1);
+  if (request.cameras.empty() || devices < 2 || devices > scan::most_devices)
     throw Error(Exit::usage, "--camera", "is given " + std::to_string(request.cameras.size()) + " times",
-                "one camera with --projector, or two cameras: --camera left --camera right");
+                format("two to %zu cameras, --camera left --camera right, or one and more with --projector",
+                       scan::most_devices));
   request.least_reflected = call.number("least-light");
   request.least_difference = call.number("least-difference");
   request.least_share = call.number("least-share"), request.least_sigmas = call.number("least-sigmas");
@@ -103,8 +106,8 @@ const cli::Program& gonio_program() {
       .name = "structured-light",
       .sentence = "points with their own error from patterns that a projector shows",
       .synopsis = {"--pattern gray|line-shift|cosine --size WIDTHxHEIGHT --out DIR [OPTION]... [manifest.json]",
-                   "--camera NAME --camera NAME --out DIR [OPTION]... -i rig.json [PICTURE]...",
-                   "--camera NAME --projector NAME --out DIR [OPTION]... -i rig.json [PICTURE]..."},
+                   "--camera NAME --camera NAME... --out DIR [OPTION]... -i rig.json [PICTURE]...",
+                   "--camera NAME... --projector NAME --out DIR [OPTION]... -i rig.json [PICTURE]..."},
       .options = options(),
       .operands = {{.name = "PICTURE",
                     .type = Type::text,
@@ -116,12 +119,14 @@ const cli::Program& gonio_program() {
       .takes_out = true,
       .sections_read = {"files", "cameras", "rigs", "images", "projections"},
       .sections_written = {"files", "images", "projections", "clouds"},
-      .files = {{"NAME-000.png", "what the projector shows, frame by frame"},
-                {"VIEW.ply",
-                 "points with sigma, covariance, reprojection_px, pixel_x, pixel_y (of the first camera) and "
-                 "reflected (what the projector's white adds there)"},
-                {"VIEW-CAMERA-codes.exr",
-                 "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: " + refusals()}},
+      .files =
+          {{"NAME-000.png", "what the projector shows, frame by frame"},
+           {"VIEW.ply",
+            "points with sigma, covariance, reprojection_px, pixel_x, pixel_y (of the first camera, or of the one that "
+            "`camera` counts), reflected (what the projector's white adds there) and, of colour pictures, red, green "
+            "and blue of that, linear"},
+           {"VIEW-CAMERA-codes.exr",
+            "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: " + refusals()}},
       .exits = {{Exit::negative, "a view has no point"},
                 {Exit::quality,
                  "cameras, or a projector's columns and rows, contradict each other by more than three times "
