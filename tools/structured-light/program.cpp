@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "scan/decode.h"
@@ -89,6 +90,7 @@ void check(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   if (call.given("pattern")) return write_pattern(call);
+  keep_freed_memory();
   const scan::ScanSummary made = scan::scan_document(call.document, request_of(call));
   if (made.fewest_points == 0) return Exit::negative;
   if (made.epipolar_chi_square <= most_chi_square) return Exit::done;
