@@ -2,6 +2,7 @@
 #include "tools/structured-light/options.h"
 
 #include "base/quantity.h"
+#include "scan/decode.h"
 #include "tools/structured-light/pattern.h"
 
 namespace gonio::tools::structured_light {
@@ -81,6 +82,13 @@ std::vector<cli::Option> options() {
       {.name = "html", .type = Type::output_file, .help = "Write a report page here."},
       {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
   all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+std::string refusals() {
+  std::string all = "0 told";
+  for (std::size_t r = 1; r < scan::refusal_names.size(); ++r)
+    all += ", " + std::to_string(r) + " " + std::string(scan::refusal_names[r]);
   return all;
 }
 

@@ -8,7 +8,6 @@
 #include "base/memory.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "scan/decode.h"
 #include "scan/scan_document.h"
 #include "scan/triangulate.h"
 #include "tools/structured-light/options.h"
@@ -64,14 +63,6 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
-}
-
-// "0 told, 1 masked, ..."
-std::string refusals() {
-  std::string all = "0 told";
-  for (std::size_t r = 1; r < scan::refusal_names.size(); ++r)
-    all += ", " + std::to_string(r) + " " + std::string(scan::refusal_names[r]);
-  return all;
 }
 
 void check(cli::Invocation& call) {
