@@ -197,6 +197,28 @@ report::Figure points_of(const Cloud& cloud, const Station& first, int width, in
       .caption = "One for each few pixels of the first camera; turn it by dragging. Dark is exact, yellow least so."};
 }
 
+// Of every camera; reasons that nowhere occur are left out. Ambiguous pixels were told, and refused with the points.
+report::TableText refusals_of(const std::vector<std::string>& cameras, const std::vector<Codes>& codes,
+                              const Cloud& cloud) {
+  report::TableText table;
+  table.caption = "Pixels by what became of them.";
+  table.columns = {{"Camera", "", false}};
+  for (const std::string& name : cameras) table.rows.push_back({name});
+  const auto ambiguous = cloud.refused.find(std::string(refusal_names[static_cast<std::size_t>(Refusal::ambiguous)]));
+  for (std::size_t r = 0; r < refusal_names.size(); ++r) {
+    std::vector<std::size_t> counts;
+    for (const Codes& own : codes)
+      counts.push_back(static_cast<std::size_t>(std::ranges::count(own.refusal, static_cast<Refusal>(r))));
+    if (ambiguous != cloud.refused.end() && static_cast<Refusal>(r) == Refusal::ambiguous)
+      counts[0] = ambiguous->second;
+    if (ambiguous != cloud.refused.end() && r == 0) counts[0] -= ambiguous->second;
+    if (std::ranges::count(counts, 0u) == static_cast<std::ptrdiff_t>(counts.size())) continue;
+    table.columns.push_back({r == 0 ? "told" : std::string(refusal_names[r])});
+    for (std::size_t c = 0; c < counts.size(); ++c) table.rows[c].push_back(std::to_string(counts[c]));
+  }
+  return table;
+}
+
 }  // namespace
 
 void ScanPage::add(const std::string& view, const std::vector<std::string>& cameras, const std::vector<Codes>& codes,
@@ -218,17 +240,8 @@ void ScanPage::add(const std::string& view, const std::vector<std::string>& came
     v.numbers.push_back({"what should meet misses by", report::number_text(std::sqrt(*entry.epipolar_chi_square), 2),
                          "times its noise", "1: all is as stated",
                          *entry.epipolar_chi_square > 9 ? report::Tone::bad : report::Tone::neutral});
-  v.refused.caption = "Pixels by what became of them.";
-  v.refused.columns = {{"Camera", "", false}};
-  for (const std::string_view name : refusal_names)
-    v.refused.columns.push_back({name == "none" ? "told" : std::string(name)});
-  for (std::size_t c = 0; c < codes.size(); ++c) {
-    std::vector<std::string> row{cameras[c]};
-    for (std::size_t r = 0; r < refusal_names.size(); ++r)
-      row.push_back(std::to_string(std::ranges::count(codes[c].refusal, static_cast<Refusal>(r))));
-    v.refused.rows.push_back(std::move(row));
-    v.figures.push_back(figures_of(codes[c], sequence));
-  }
+  v.refused = refusals_of(cameras, codes, cloud);
+  for (const Codes& own : codes) v.figures.push_back(figures_of(own, sequence));
   std::ranges::sort(sigmas);
   const double largest =
       sigmas.empty() ? 1 : sigmas[static_cast<std::size_t>(0.95 * static_cast<double>(sigmas.size() - 1))];
