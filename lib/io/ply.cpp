@@ -12,11 +12,14 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "io/picture.h"
 #include "io/ply_header.h"
 
 namespace gonio::io {
 namespace {
+
+constexpr std::size_t vertices_at_once = 1 << 14;
 
 // The values of the body one after the other, whatever their encoding.
 class Values {
@@ -282,18 +285,29 @@ TriangleMesh parse_ply(std::string_view file, const std::string& place, const Pl
 
 void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const PlyWish& wish) {
   std::string bytes = header_of(mesh, wish);
-  bytes.reserve(bytes.size() + mesh.positions_m.size() * 64 + mesh.triangles.size() * 13);
-  for (std::size_t i = 0; i < mesh.positions_m.size(); ++i) {
-    for (int k = 0; k < 3; ++k) append(bytes, mesh.positions_m[i][k]);
+  std::string one;  // vertex: all are as long
+  const auto append_vertex = [&mesh](std::string& to, std::size_t i) {
+    for (int k = 0; k < 3; ++k) append(to, mesh.positions_m[i][k]);
     if (!mesh.normals.empty())
-      for (int k = 0; k < 3; ++k) append(bytes, mesh.normals.at(i)[k]);
+      for (int k = 0; k < 3; ++k) append(to, mesh.normals.at(i)[k]);
     if (!mesh.texture.empty()) {
-      append(bytes, mesh.texture.at(i).x);
-      append(bytes, mesh.texture.at(i).y);
+      append(to, mesh.texture.at(i).x);
+      append(to, mesh.texture.at(i).y);
     }
     for (const auto& property : mesh.properties)
-      if (!property.empty()) append(bytes, property.at(i));
-  }
+      if (!property.empty()) append(to, property.at(i));
+  };
+  if (!mesh.positions_m.empty()) append_vertex(one, 0);
+  const std::size_t first = bytes.size(), count = mesh.positions_m.size();
+  bytes.reserve(first + count * one.size() + mesh.triangles.size() * 17);
+  bytes.resize(first + count * one.size());
+  parallel_for(0, (count + vertices_at_once - 1) / vertices_at_once, [&](std::size_t n) {
+    std::string part;
+    const std::size_t begin = n * vertices_at_once, end = std::min(count, begin + vertices_at_once);
+    part.reserve((end - begin) * one.size());
+    for (std::size_t i = begin; i < end; ++i) append_vertex(part, i);
+    part.copy(&bytes[first + begin * one.size()], part.size());
+  });
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     append(bytes, std::uint8_t{3});
     for (const auto index : mesh.triangles[t]) append(bytes, static_cast<std::int32_t>(index));

@@ -39,6 +39,16 @@ struct BitVerdict {
   Block<std::uint32_t> moved{};
 };
 
+// What is known of the pixels of a block, and where: null pointers where nothing is kept.
+struct BitNotes {
+  std::uint32_t* gray = nullptr;
+  Refusal* refusal = nullptr;
+  std::uint8_t *least_share = nullptr, *direct_share = nullptr;  // in units of share_unit
+  bool refuse_moved = false;
+};
+constexpr float share_unit = 1 / 200.f;
+void note_bits(const BitVerdict& verdict, int bit, std::size_t count, const BitNotes& notes);
+
 // Without an inverse, `bit` is compared with the mean of white and black, and nothing tells what moved.
 void judge_bits(const BitBlock& read, const BitLimits& limits, bool has_inverse, BitVerdict& verdict);
 

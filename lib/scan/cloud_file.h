@@ -8,7 +8,8 @@
 namespace gonio::scan {
 
 // In the world; a cloud that nobody placed there stands in its rig's frame, and `world_from_rig` is the identity.
-// Covariances turn along.
+// Covariances turn along. Colours are linear floats; `camera`, where others than the first saw a point first, counts
+// the cloud's cameras from 0.
 void write_cloud(const std::filesystem::path& path, const Cloud& cloud,
                  const Rigid<frame::World, frame::Rig>& world_from_rig);
 

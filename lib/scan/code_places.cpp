@@ -14,7 +14,10 @@ constexpr double enough = 12;          // pixels that need no neighbours
 constexpr int widest_gap = 4;          // pixels between those of one code: borders of stripes are refused
 constexpr int neighbours = 3;          // pixels to each side
 constexpr float near_code = 6;         // pixels of the projector
-constexpr double bent = 3;             // times a cell's own variance: a plane over its neighbours does not fit
+constexpr std::size_t most_compared = 50000, least_compared = 500;
+constexpr std::int64_t least_apart = 3, most_apart = 12;  // cells
+constexpr double torn = 100;                              // of a squared difference, over its variance
+constexpr double bent = 3;  // times a cell's own variance: a plane over its neighbours does not fit
 
 // Sums, with weights, over pixels (x, y) at distances (u, v) of their codes from a pixel of the projector.
 struct PixelSums {
@@ -191,6 +194,32 @@ std::vector<Cell> cells_of(const Codes& codes, int projector_width_px, std::size
 }
 
 }  // namespace
+
+double saw_factor(std::span<const CodePlace> places, int projector_width_px) {
+  const std::size_t stride = 1 + places.size() / most_compared;
+  const auto find = [&places](std::int64_t code) {
+    const auto at = std::ranges::lower_bound(places, code, {}, &CodePlace::code);
+    return at != places.end() && at->code == code ? &*at : nullptr;
+  };
+  Vec2 factor{1, 1};
+  for (const std::int64_t along : {std::int64_t{1}, static_cast<std::int64_t>(projector_width_px)}) {
+    double x = 0, y = 0, count = 0;
+    for (std::size_t i = 0; i < places.size(); i += stride) {
+      const std::int64_t n =
+          along * (least_apart + static_cast<std::int64_t>(i / stride) % (most_apart - least_apart + 1));
+      const CodePlace &a = places[i], *b = find(a.code + n), *c = find(a.code + 2 * n), *d = find(a.code + 3 * n);
+      if (b == nullptr || c == nullptr || d == nullptr) continue;
+      const Vec2 off = a.pixel - b->pixel * 3 + c->pixel * 3 - d->pixel,
+                 v = a.variance_px2 + b->variance_px2 * 9 + c->variance_px2 * 9 + d->variance_px2;
+      const double qx = off.x * off.x / v.x, qy = off.y * off.y / v.y;
+      if (qx > torn || qy > torn) continue;  // an edge of the scene
+      x += qx, y += qy, ++count;
+    }
+    if (count < least_compared) continue;
+    factor.x = std::max(factor.x, x / count), factor.y = std::max(factor.y, y / count);
+  }
+  return 0.5 * (factor.x + factor.y);
+}
 
 std::vector<std::uint32_t> ambiguous_pixels(const Codes& codes, int projector_width_px) {
   std::vector<std::uint32_t> all;

@@ -1,6 +1,7 @@
 // Where a camera sees each pixel of the projector. For this room.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geom/vector.h"
@@ -20,6 +21,13 @@ struct CodePlace {
 // unless these do not lie on one (an edge of the scene); then the centroid.
 // Ambiguous pixels (below) do not count, and are counted.
 std::vector<CodePlace> places_of(const Codes& codes, int projector_width_px, std::size_t* ambiguous = nullptr);
+
+// By how much variances of places under whole stripes are too small, 1 at least. What stripes upon pixels leave of
+// neighbouring cells goes up and down like a saw, and does not average out. Places of cells that share no pixel say how
+// much it is: third differences p(0) - 3 p(n) + 3 p(2 n) - p(3 n), squared, over what their variances make of them; the
+// mean over many n, as single ones meet the saw's own period; along columns and along rows, of which each hides what
+// the other shows; of x and of y the mean.
+double saw_factor(std::span<const CodePlace> places, int projector_width_px);
 
 // Pixels that tell a pixel of the projector which others, apart from them, tell as well. Of such clusters the one is
 // right whose neighbours tell neighbouring pixels of the projector twice as often as about any other; all are ambiguous

@@ -247,6 +247,7 @@ class CosineDecoder {
     }
     if (r_.motion && moved(i, phases, all, reflected)) return Refusal::motion;
     codes_.reflected[i] = static_cast<float>(reflected);
+    if (share_of_finest(phases) < r_.least_direct * usual_share_) return Refusal::subsurface;
     const double size = r_.sequence.size(axis);
     const std::size_t finest = all.size() - 1;
     const double period = size / all[finest].periods;
@@ -275,7 +276,6 @@ class CosineDecoder {
       return Refusal::contradictory;
     if (r_.indirect && next >= 0 && next - least < least_ahead * (wider + disagreeing * fine_least / further))
       return Refusal::interreflection;
-    if (share_of_finest(phases) < r_.least_direct * usual_share_) return Refusal::subsurface;
     double sum = 0, weights = 0;
     for (std::size_t f = 0; f <= finest; ++f) {
       const double px_per_rad = size / (2 * pi * all[f].periods),

@@ -72,7 +72,7 @@ struct CameraFrame {
 // Why a pixel has no code. edge: the stripe's border goes through it; contradictory: its numbers of periods do not
 // agree; interreflection: light from other parts of the scene may have made a bit, or a period, another; motion: sums
 // that light cannot change differ; subsurface: fine cosines are lost in the thing; ambiguous: one pixel of the
-// projector is told by pixels that lie apart (unique_places.h). Numbers are written to files: new ones come last.
+// projector is told by pixels that lie apart (code_places.h). Numbers are written to files: new ones come last.
 enum class Refusal : std::uint8_t {
   none,
   masked,

@@ -18,15 +18,10 @@ using What = Shown::What;
 
 constexpr float least_of_noise = 8;  // what white adds, over its noise
 constexpr std::size_t blocks_at_once = 32;
-constexpr int direct_bits = 5;           // next to the finest, of each axis: what tells direct light
-constexpr float share_unit = 1 / 200.f;  // of shares in bytes
-constexpr float direct_margin = 0.15f;   // error of the direct share, twice, and of a bit's
-constexpr int coarser = 3;               // than the finest bit: of which light goes to few stripes
-constexpr float moved_share = 0.5f;      // of what white adds: something else stands there
-
-std::uint8_t share_code(float share) {
-  return static_cast<std::uint8_t>(std::min(share, 1.2f) / share_unit + 0.5f);
-}
+constexpr int direct_bits = 5;          // next to the finest, of each axis: what tells direct light
+constexpr float direct_margin = 0.15f;  // error of the direct share, twice, and of a bit's
+constexpr int coarser = 3;              // than the finest bit: of which light goes to few stripes
+constexpr float moved_share = 0.5f;     // of what white adds: something else stands there
 
 class GrayDecoder {
  public:
@@ -175,8 +170,7 @@ class GrayDecoder {
     const BitLimits limit = limits();
     const auto direct = shares_.find({axis, bit});
     const bool of_many = bit >= finest_[static_cast<std::size_t>(axis)] + coarser,
-               coarse = !least_share_.empty() && of_many, moves = r_.motion && of_many,
-               of_shares = coarse || direct != shares_.end();
+               coarse = !least_share_.empty() && of_many, moves = r_.motion && of_many;
     for_blocks([&](std::size_t first, std::size_t count) {
       BitBlock read;
       BitVerdict verdict;
@@ -187,19 +181,9 @@ class GrayDecoder {
       for (std::size_t i = 0; i < count; ++i) read.lit_and_dark[i] = white[i] + black[i];
       std::copy_n(&codes_.reflected[first], count, read.reflected.begin());
       judge_bits(read, limit, inverse_frame.has_value(), verdict);
-      for (std::size_t i = 0; i < count; ++i)
-        gray[first + i] |= static_cast<std::uint32_t>(verdict.share[i] > 0) << bit;
-      for (std::size_t i = 0; i < count; ++i) {
-        Refusal& refusal = codes_.refusal[first + i];
-        refusal = verdict.edge[i] != 0 && refusal == Refusal::none ? Refusal::edge : refusal;
-        if (moves && verdict.moved[i] != 0 && (refusal == Refusal::none || refusal == Refusal::edge))
-          refusal = Refusal::motion;
-      }
-      for (std::size_t i = 0; of_shares && i < count; ++i) {
-        const std::uint8_t share = share_code(std::abs(verdict.share[i]));
-        if (coarse) least_share_[first + i] = std::min(least_share_[first + i], share);
-        if (direct != shares_.end()) direct->second[first + i] = share;
-      }
+      note_bits(verdict, bit, count,
+                {&gray[first], &codes_.refusal[first], coarse ? &least_share_[first] : nullptr,
+                 direct != shares_.end() ? &direct->second[first] : nullptr, moves});
     });
   }
 

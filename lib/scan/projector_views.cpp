@@ -178,7 +178,7 @@ class Lookup {
       for (const std::size_t i : frames) note_(manifest::picture_path(document, i));
     DecodeRequest decoding;
     decoding.width = first.width, decoding.height = first.height;
-    return codes_of(document, request_.projection, frames, std::move(decoding));
+    return codes_of(document, request_.projection, request_.projector, frames, std::move(decoding));
   }
 
   ProjectorRequest request_;

@@ -73,6 +73,29 @@ manifest::Cloud entry_of(const Cloud& cloud, const ScanRequest& request) {
   return entry;
 }
 
+Cloud points_of(const ScanRequest& request, const std::vector<Codes>& codes, const std::vector<Station>& stations,
+                const Sequence& sequence) {
+  if (codes.size() == 1) return points_of_projector(codes[0], stations[0], stations[1]);
+  std::vector<Look> cameras;
+  for (std::size_t c = 0; c < codes.size(); ++c) cameras.push_back({&codes[c], stations[c]});
+  return points_of_rig(cameras, request.projector.empty() ? nullptr : &stations.back(), sequence.width_px);
+}
+
+// Where all cameras take colour pictures.
+void colour(const Document& document, const ScanView& view, const Sequence& sequence, const std::vector<Codes>& codes,
+            Cloud& cloud) {
+  std::vector<std::vector<std::array<float, 3>>> pictures;
+  for (std::size_t c = 0; c < codes.size(); ++c) {
+    pictures.push_back(colours_of(document, sequence, view.cameras[c], codes[c].width, codes[c].height));
+    if (pictures.back().empty()) return;
+  }
+  for (const ScanPoint& p : cloud.points) {
+    const auto x = static_cast<std::size_t>(std::lround(p.pixel.x)),
+               y = static_cast<std::size_t>(std::lround(p.pixel.y));
+    cloud.colours.push_back(pictures[p.camera][y * static_cast<std::size_t>(codes[p.camera].width) + x]);
+  }
+}
+
 void log_noise(const std::string& camera, const Codes& codes) {
   log(LogLevel::info,
       format("camera %s: noise %.3g of a full picture in the dark%s", camera.c_str(), codes.noise.read,
@@ -87,7 +110,7 @@ void log_noise(const std::string& camera, const Codes& codes) {
 
 void log_cloud(const std::string& name, const manifest::Cloud& c, std::size_t matched) {
   std::string text = format("view %s: %lld points", name.c_str(), static_cast<long long>(c.points));
-  if (matched > 0) text += format(" of %zu pixels of the projector that both cameras see", matched);
+  if (matched > 0) text += format(" of %zu pixels of the projector that two devices know of", matched);
   if (c.sigma_m) text += format(", sigma %.3g mm", 1e3 * *c.sigma_m);
   if (c.reprojection_px && *c.reprojection_px > 0) text += format(", reprojection %.3g px", *c.reprojection_px);
   std::string refused;
@@ -110,10 +133,11 @@ void check_scan(const Document& document, const ScanRequest& request) {
                   format("has %d x %d pixels, and what it shows %d x %d", projector.lens.width_px(),
                          projector.lens.height_px(), sequence.width_px, sequence.height_px),
                   "state the projector's own size in both");
-  } else if (!sequence.tells(Axis::column) || !sequence.tells(Axis::row)) {
+  }
+  if (request.cameras.size() > 1 && (!sequence.tells(Axis::column) || !sequence.tells(Axis::row))) {
     throw Error(Exit::data, manifest::place(document, "/projections/" + request.projection),
-                "tells one axis alone, and two cameras need both to find the same pixel of the projector",
-                "show columns and rows, or calibrate the projector (--projector)");
+                "tells one axis alone, and several cameras need both to find the same pixel of the projector",
+                "show columns and rows, or measure by one camera and a projector that is calibrated (--projector)");
   }
   for (const ScanView& view : views_of(document, request.projection, request.cameras))
     for (const Frames& frames : view.cameras)
@@ -135,13 +159,13 @@ ScanSummary scan_document(Document& document, const ScanRequest& request) {
   for (const ScanView& view : views_of(document, request.projection, request.cameras)) {
     std::vector<Codes> codes(view.cameras.size());
     parallel_for(0, codes.size(), [&](std::size_t c) {
-      codes[c] = codes_of(document, request.projection, view.cameras[c], decoding_of(request, stations[c]));
+      codes[c] =
+          codes_of(document, request.projection, request.projector, view.cameras[c], decoding_of(request, stations[c]));
     });
     for (std::size_t c = 0; c < codes.size() && request.codes; ++c)
       write_codes(request.output_path(file_stem(view.name + "-" + request.cameras[c]) + "-codes.exr"), codes[c]);
-    const Cloud cloud = request.projector.empty()
-                            ? points_of_cameras(codes[0], stations[0], codes[1], stations[1], sequence.width_px)
-                            : points_of_projector(codes[0], stations[0], stations[1]);
+    Cloud cloud = points_of(request, codes, stations, sequence);
+    colour(document, view, sequence, codes, cloud);
     for (std::size_t c = 0; c < codes.size(); ++c) log_noise(request.cameras[c], codes[c]);
     const auto pose = world_from_camera(document, view.cameras[0][0]);
     const auto path = request.output_path(file_stem(view.name) + ".ply");

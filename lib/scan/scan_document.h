@@ -12,7 +12,7 @@ namespace gonio::scan {
 
 struct ScanRequest {
   std::string projection;            // name in projections
-  std::vector<std::string> cameras;  // that look on: one, with a projector, or two
+  std::vector<std::string> cameras;  // that look on: one, with a projector, or two and more
   std::string projector{};           // name in cameras; empty: its pixels tell cameras apart, and no more
   double least_reflected = 0, least_difference = 0, least_share = 0.05,
          least_sigmas = 2;              // decode.h; light, 1 where a file is full

@@ -17,8 +17,9 @@
 namespace gonio::scan {
 namespace {
 
-constexpr int widest = 640, finest_grid = 160;  // pixels of a picture; cells of the surface along the longer side
-constexpr float torn = 6;                       // times the usual step in depth between two cells: no surface there
+constexpr int widest = 640, finest_grid = 160,
+              residual_cells = 120;  // pixels of a picture; cells of the surface along the longer side
+constexpr float torn = 6;            // times the usual step in depth between two cells: no surface there
 
 // Colours that the colour-blind tell apart (Okabe & Ito 2008), in the order of Refusal.
 struct RefusalColour {
@@ -154,6 +155,35 @@ report::ViewedMesh surface_of(const Cloud& cloud, const Station& first, int widt
   return mesh;
 }
 
+// What a point's pictures contradict each other by, cell by cell of the first camera's picture: the mean.
+report::Figure residuals_of(const Cloud& cloud, int width, int height) {
+  const int cell = std::max(1, (width + residual_cells - 1) / residual_cells), across = (width + cell - 1) / cell,
+            down = (height + cell - 1) / cell;
+  std::vector<double> sum(static_cast<std::size_t>(across * down)), count(sum.size()), sizes;
+  for (const ScanPoint& p : cloud.points) {
+    if (p.across_px == 0 || p.camera != 0) continue;
+    const int x = static_cast<int>(p.pixel.x + 0.5) / cell, y = static_cast<int>(p.pixel.y + 0.5) / cell;
+    if (x < 0 || y < 0 || x >= across || y >= down) continue;
+    const auto i = static_cast<std::size_t>(y * across + x);
+    sum[i] += double{p.across_px}, ++count[i], sizes.push_back(std::abs(double{p.across_px}));
+  }
+  if (sizes.empty()) return {};
+  const double full = std::max(1e-6, 2 * stats::median(sizes));
+  io::Image picture(across, down, {"R", "G", "B"});
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const report::Colour c =
+        count[i] > 0 ? report::signed_colour(sum[i] / count[i] / full) : report::Colour{0.88f, 0.88f, 0.88f};
+    for (std::size_t k = 0; k < 3; ++k) picture.data[3 * i + k] = c[k];
+  }
+  return {.png = io::encode_png(picture),
+          .title = "What should meet and does not",
+          .caption =
+              "How far the first camera saw points off where all pictures together put them, mean of a cell: red "
+              "on one side, blue on the other, full colour at " +
+              report::number_text(full, 2) +
+              " px. Noise is speckle; what goes smoothly over the picture is the rig, or a lens."};
+}
+
 report::Figure points_of(const Cloud& cloud, const Station& first, int width, int height, const std::string& name,
                          double largest_mm) {
   report::MeshView view;
@@ -165,6 +195,28 @@ report::Figure points_of(const Cloud& cloud, const Station& first, int width, in
       .svg = report::html(view),
       .title = "Points",
       .caption = "One for each few pixels of the first camera; turn it by dragging. Dark is exact, yellow least so."};
+}
+
+// Of every camera; reasons that nowhere occur are left out. Ambiguous pixels were told, and refused with the points.
+report::TableText refusals_of(const std::vector<std::string>& cameras, const std::vector<Codes>& codes,
+                              const Cloud& cloud) {
+  report::TableText table;
+  table.caption = "Pixels by what became of them.";
+  table.columns = {{"Camera", "", false}};
+  for (const std::string& name : cameras) table.rows.push_back({name});
+  const auto ambiguous = cloud.refused.find(std::string(refusal_names[static_cast<std::size_t>(Refusal::ambiguous)]));
+  for (std::size_t r = 0; r < refusal_names.size(); ++r) {
+    std::vector<std::size_t> counts;
+    for (const Codes& own : codes)
+      counts.push_back(static_cast<std::size_t>(std::ranges::count(own.refusal, static_cast<Refusal>(r))));
+    if (ambiguous != cloud.refused.end() && static_cast<Refusal>(r) == Refusal::ambiguous)
+      counts[0] = ambiguous->second;
+    if (ambiguous != cloud.refused.end() && r == 0) counts[0] -= ambiguous->second;
+    if (std::ranges::count(counts, 0u) == static_cast<std::ptrdiff_t>(counts.size())) continue;
+    table.columns.push_back({r == 0 ? "told" : std::string(refusal_names[r])});
+    for (std::size_t c = 0; c < counts.size(); ++c) table.rows[c].push_back(std::to_string(counts[c]));
+  }
+  return table;
 }
 
 }  // namespace
@@ -188,21 +240,13 @@ void ScanPage::add(const std::string& view, const std::vector<std::string>& came
     v.numbers.push_back({"what should meet misses by", report::number_text(std::sqrt(*entry.epipolar_chi_square), 2),
                          "times its noise", "1: all is as stated",
                          *entry.epipolar_chi_square > 9 ? report::Tone::bad : report::Tone::neutral});
-  v.refused.caption = "Pixels by what became of them.";
-  v.refused.columns = {{"Camera", "", false}};
-  for (const std::string_view name : refusal_names)
-    v.refused.columns.push_back({name == "none" ? "told" : std::string(name)});
-  for (std::size_t c = 0; c < codes.size(); ++c) {
-    std::vector<std::string> row{cameras[c]};
-    for (std::size_t r = 0; r < refusal_names.size(); ++r)
-      row.push_back(std::to_string(std::ranges::count(codes[c].refusal, static_cast<Refusal>(r))));
-    v.refused.rows.push_back(std::move(row));
-    v.figures.push_back(figures_of(codes[c], sequence));
-  }
+  v.refused = refusals_of(cameras, codes, cloud);
+  for (const Codes& own : codes) v.figures.push_back(figures_of(own, sequence));
   std::ranges::sort(sigmas);
   const double largest =
       sigmas.empty() ? 1 : sigmas[static_cast<std::size_t>(0.95 * static_cast<double>(sigmas.size() - 1))];
   if (!cloud.points.empty()) v.points = points_of(cloud, first, codes[0].width, codes[0].height, view, largest);
+  v.residuals = residuals_of(cloud, codes[0].width, codes[0].height);
   views_.push_back(std::move(v));
 }
 
@@ -218,6 +262,7 @@ std::string ScanPage::html() const {
     page.section(v.name);
     page.key_numbers(v.numbers);
     if (!v.points.svg.empty()) page.figures({v.points}, 700);
+    if (!v.residuals.png.empty()) page.figures({v.residuals}, 420);
     page.table(v.refused);
     for (std::size_t c = 0; c < v.figures.size(); ++c) {
       page.subsection("Camera " + v.refused.rows[c][0]);

@@ -24,7 +24,7 @@ class ScanPage {
     std::vector<report::KeyNumber> numbers;
     report::TableText refused;
     std::vector<std::vector<report::Figure>> figures;  // of each camera
-    report::Figure points;
+    report::Figure points, residuals;
     report::ColourScale scale;
   };
   std::vector<View> views_;

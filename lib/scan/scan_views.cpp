@@ -157,7 +157,68 @@ CameraFrame read_frame(const Document& document, std::size_t image, int width, i
   return frame;
 }
 
+std::vector<std::array<float, 3>> colours_of(const Document& document, const Sequence& sequence, const Frames& frames,
+                                             int width, int height) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  std::vector<std::array<float, 3>> sum;
+  // False for a grey picture.
+  const auto add = [&](std::size_t frame, float weight) {
+    const std::size_t image = frames[frame];
+    const std::filesystem::path path = manifest::picture_path(document, image);
+    if (io::is_grey_of_8_bits(path)) return false;
+    const ImageEntry& entry = document.images[image];
+    const photograph::LinearPicture read =
+        photograph::read_linear(path, entry.response, place_of(document, image, "/response"), entry.saturation);
+    check_size(path, read.colour.width, read.colour.height, width, height);
+    const std::size_t channels = read.colour.channels.size();
+    if (channels < 3) return false;
+    sum.resize(pixels);
+    for (std::size_t i = 0; i < pixels; ++i)
+      for (std::size_t k = 0; k < 3; ++k) sum[i][k] += weight * read.colour.data[i * channels + k];
+    return true;
+  };
+  const Shown* coarsest = nullptr;
+  for (std::size_t f = 0; f < sequence.frames.size(); ++f) {
+    const Shown& s = sequence.frames[f];
+    if (s.what == Shown::What::white || s.what == Shown::What::black) {
+      if (!add(f, s.what == Shown::What::white ? 1.0f : -1.0f)) return {};
+    } else if (s.what == Shown::What::cosine && (coarsest == nullptr || s.periods < coarsest->periods)) {
+      coarsest = &s;
+    }
+  }
+  if (!sum.empty() || coarsest == nullptr) return sum;
+  const auto is_one = [coarsest](const Shown& s) {
+    return s.what == coarsest->what && s.axis == coarsest->axis && s.periods == coarsest->periods;
+  };
+  const auto count = static_cast<float>(std::ranges::count_if(sequence.frames, is_one));
+  for (std::size_t f = 0; f < sequence.frames.size(); ++f)
+    if (is_one(sequence.frames[f]) && !add(f, 1 / count)) return {};
+  return sum;
+}
+
 namespace {
+
+// Of several projectors the numbers stand in the order of `on`.
+void take_gamma(const Document& document, const std::string& projector, DecodeRequest& decoding) {
+  const auto use = document.mechanisms.find(mechanism::projector_gamma().id);
+  if (use == document.mechanisms.end()) return;
+  const std::vector<std::string>& on = use->second.on;
+  std::size_t place = 0;
+  if (!on.empty() && !projector.empty()) {
+    place = static_cast<std::size_t>(std::ranges::find(on, projector) - on.begin());
+    if (place == on.size()) return;
+  } else if (on.size() > 1) {
+    return;
+  }
+  const auto gamma = use->second.parameters.find("gamma");
+  const auto sigma = use->second.sigma.find("gamma");
+  if (gamma != use->second.parameters.end() && gamma->second.given()) {
+    const std::vector<double>& values = gamma->second.value;
+    decoding.gamma = values[std::min(place, values.size() - 1)];
+  }
+  if (sigma != use->second.sigma.end() && !sigma->second.empty())
+    decoding.gamma_sigma = sigma->second[std::min(place, sigma->second.size() - 1)];
+}
 
 void warn_of_level(const std::string& camera, const char* side, const std::optional<FlatLevel>& level) {
   if (!level) return;
@@ -168,7 +229,8 @@ void warn_of_level(const std::string& camera, const char* side, const std::optio
 
 }  // namespace
 
-Codes codes_of(const Document& document, const std::string& projection, const Frames& frames, DecodeRequest decoding) {
+Codes codes_of(const Document& document, const std::string& projection, const std::string& projector,
+               const Frames& frames, DecodeRequest decoding) {
   decoding.sequence = sequence_of(document, projection);
   decoding.read = [&](std::size_t frame) {
     return read_frame(document, frames[frame], decoding.width, decoding.height);
@@ -178,12 +240,7 @@ Codes codes_of(const Document& document, const std::string& projection, const Fr
     decoding.mask = photograph::read_mask_of(io::Image(decoding.width, decoding.height, {"Y"}), mask,
                                              place_of(document, frames[0], "/mask"));
   decoding.noise = noise_of_frames(document, frames);
-  if (const auto use = document.mechanisms.find(mechanism::projector_gamma().id); use != document.mechanisms.end()) {
-    const auto gamma = use->second.parameters.find("gamma");
-    const auto sigma = use->second.sigma.find("gamma");
-    if (gamma != use->second.parameters.end() && gamma->second.given()) decoding.gamma = gamma->second.scalar();
-    if (sigma != use->second.sigma.end() && !sigma->second.empty()) decoding.gamma_sigma = sigma->second[0];
-  }
+  take_gamma(document, projector, decoding);
   Codes codes = decode(decoding);
   const std::string& camera = document.images[frames[0]].camera;
   warn_of_level(camera, "above", codes.above), warn_of_level(camera, "below", codes.below);

@@ -30,8 +30,14 @@ std::optional<Rigid<frame::World, frame::Camera>> world_from_camera(const manife
 // Error(data) for a picture of another size.
 CameraFrame read_frame(const manifest::Document& document, std::size_t image, int width, int height);
 
-// `decoding`: the picture's size and limits; sequence, frames, mask and noise are the manifest's.
-Codes codes_of(const manifest::Document& document, const std::string& projection, const Frames& frames,
-               DecodeRequest decoding);
+// `decoding`: the picture's size and limits; sequence, frames, mask, noise and what is known of the projector (its
+// name, or empty: the only one that something is known of) are the manifest's.
+Codes codes_of(const manifest::Document& document, const std::string& projection, const std::string& projector,
+               const Frames& frames, DecodeRequest decoding);
+
+// Pixel by pixel what the projector's white adds, linear red, green and blue; where it shows no white, the mean under
+// the coarsest cosines. Nothing for grey pictures.
+std::vector<std::array<float, 3>> colours_of(const manifest::Document& document, const Sequence& sequence,
+                                             const Frames& frames, int width, int height);
 
 }  // namespace gonio::scan

@@ -48,9 +48,10 @@ double largest_sigma(const std::array<double, 6>& c) {
   return std::sqrt(std::max(0.0, m + 2 * p * std::cos(std::acos(cosine) / 3)));
 }
 
-// Joins what was found side by side, in order, and says by how much variances were too small.
+// Joins what was found side by side, in order, and says by how much variances, `wider` times what is stated, were too
+// small.
 template <class Body>  // std::optional<Solved> of each
-void gather(std::size_t count, double most_px, const Body& body, Cloud& cloud) {
+void gather(std::size_t count, double most_px, double wider, const Body& body, Cloud& cloud) {
   std::vector<std::optional<Solved>> found(count);
   parallel_for(0, (count + points_at_once - 1) / points_at_once, [&](std::size_t n) {
     for (std::size_t i = n * points_at_once; i < std::min(count, (n + 1) * points_at_once); ++i) found[i] = body(i);
@@ -66,11 +67,11 @@ void gather(std::size_t count, double most_px, const Body& body, Cloud& cloud) {
       continue;
     }
     cloud.points.push_back(solved->point);
-    if (solved->chi_square >= 0) chi_squares.push_back(solved->chi_square / medians[solved->degrees]);
+    if (solved->chi_square >= 0) chi_squares.push_back(solved->chi_square / (wider * medians[solved->degrees]));
   }
   if (lost > 0) cloud.refused[reason(Refusal::contradictory)] += lost;
   if (!chi_squares.empty()) cloud.epipolar_chi_square = stats::median(chi_squares);
-  const double factor = std::max(1.0, cloud.epipolar_chi_square);
+  const double factor = wider * std::max(1.0, cloud.epipolar_chi_square);
   parallel_for(0, (cloud.points.size() + points_at_once - 1) / points_at_once, [&](std::size_t n) {
     for (std::size_t i = n * points_at_once; i < std::min(cloud.points.size(), (n + 1) * points_at_once); ++i) {
       ScanPoint& point = cloud.points[i];
@@ -254,7 +255,7 @@ Cloud points_of_projector(const Codes& codes, const Station& camera, const Stati
   for (std::size_t i = 0; i < codes.refusal.size(); ++i)
     if (codes.told(i) && ambiguous[i] == 0) told.push_back(i);
   gather(
-      told.size(), most_px, [&](std::size_t n) { return on_ray(codes, told[n], camera, projector); }, cloud);
+      told.size(), most_px, 1, [&](std::size_t n) { return on_ray(codes, told[n], camera, projector); }, cloud);
   return cloud;
 }
 
@@ -287,8 +288,14 @@ Cloud points_of_rig(std::span<const Look> cameras, const Station* projector, int
     if (seen > 1) sets.push_back(set);
   }
   cloud.matched = sets.size();
+  double wider = 1;  // alike for all, so that points stay where they are
+  if (std::ranges::all_of(cameras, [](const Look& look) { return look.codes->whole; })) {
+    wider = 0;
+    for (const std::vector<CodePlace>& own : places)
+      wider += saw_factor(own, projector_width_px) / static_cast<double>(places.size());
+  }
   gather(
-      sets.size(), most_px,
+      sets.size(), most_px, wider,
       [&](std::size_t n) {
         Group group;
         std::int64_t code = 0;

@@ -66,7 +66,7 @@ TEST(Triangulate, PointsOfTwoCamerasHaveTheErrorsThatTheyState) {
       const Cloud cloud =
           points_of_cameras(left, tests::station_of(world.left), right, tests::station_of(world.right), 480);
       const Off off = off_of(world, cloud);
-      EXPECT_NEAR(off.rms / off.stated, 1, gray ? 0.5 : 0.2) << static_cast<int>(shape) << gray;
+      EXPECT_NEAR(off.rms / off.stated, 1, gray ? 0.25 : 0.2) << static_cast<int>(shape) << gray;
       EXPECT_LT(std::abs(off.bias), 0.2 * off.stated) << static_cast<int>(shape) << gray;
       EXPECT_GT(cloud.matched, 10000u);
     }

@@ -2,6 +2,7 @@
 #include "tools/structured-light/options.h"
 
 #include "base/quantity.h"
+#include "scan/decode.h"
 #include "tools/structured-light/pattern.h"
 
 namespace gonio::tools::structured_light {
@@ -18,13 +19,13 @@ std::vector<cli::Option> options() {
        .preset = "projection"},
       {.name = "camera",
        .type = Type::text,
-       .help = "Which looks on; the first one's pixels are those of the points.",
+       .help = "Which looks on; the first one's pixels are those of the points that it sees.",
        .metavar = "NAME",
        .repeat = true},
       {.name = "projector",
        .type = Type::text,
        .help =
-           "The camera of the rig that is the projector. Left out: two cameras measure, and the projector only marks.",
+           "The camera of the rig that is the projector. Left out: the cameras measure, and the projector only marks.",
        .metavar = "NAME"},
       {.name = "response",
        .type = Type::choice,
@@ -81,6 +82,13 @@ std::vector<cli::Option> options() {
       {.name = "html", .type = Type::output_file, .help = "Write a report page here."},
       {.name = "codes", .type = Type::flag, .help = "Write VIEW-CAMERA-codes.exr, too."}};
   all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+std::string refusals() {
+  std::string all = "0 told";
+  for (std::size_t r = 1; r < scan::refusal_names.size(); ++r)
+    all += ", " + std::to_string(r) + " " + std::string(scan::refusal_names[r]);
   return all;
 }
 

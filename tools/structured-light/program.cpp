@@ -5,10 +5,11 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "scan/decode.h"
 #include "scan/scan_document.h"
+#include "scan/triangulate.h"
 #include "tools/structured-light/options.h"
 #include "tools/structured-light/pattern.h"
 
@@ -43,9 +44,11 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   if (!request.projector.empty() && std::ranges::find(known, request.projector) == known.end())
     throw Error(Exit::usage, "--projector", request.projector + " is none of the manifest's cameras",
                 "a projector is calibrated as a camera of the rig");
-  if (request.projector.empty() ? request.cameras.size() != 2 : request.cameras.size() != 1)
+  const std::size_t devices = request.cameras.size() + (request.projector.empty() ? 0 : 1);
+  if (request.cameras.empty() || devices < 2 || devices > scan::most_devices)
     throw Error(Exit::usage, "--camera", "is given " + std::to_string(request.cameras.size()) + " times",
-                "one camera with --projector, or two cameras: --camera left --camera right");
+                format("two to %zu cameras, --camera left --camera right, or one and more with --projector",
+                       scan::most_devices));
   request.least_reflected = call.number("least-light");
   request.least_difference = call.number("least-difference");
   request.least_share = call.number("least-share"), request.least_sigmas = call.number("least-sigmas");
@@ -60,14 +63,6 @@ scan::ScanRequest request_of(cli::Invocation& call) {
   request.output_path = [&call](const std::string& name) { return call.output_path(name); };
   request.note_input = [&call](const std::filesystem::path& path) { call.note_input(path); };
   return request;
-}
-
-// "0 told, 1 masked, ..."
-std::string refusals() {
-  std::string all = "0 told";
-  for (std::size_t r = 1; r < scan::refusal_names.size(); ++r)
-    all += ", " + std::to_string(r) + " " + std::string(scan::refusal_names[r]);
-  return all;
 }
 
 void check(cli::Invocation& call) {
@@ -86,6 +81,7 @@ void check(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   if (call.given("pattern")) return write_pattern(call);
+  keep_freed_memory();
   const scan::ScanSummary made = scan::scan_document(call.document, request_of(call));
   if (made.fewest_points == 0) return Exit::negative;
   if (made.epipolar_chi_square <= most_chi_square) return Exit::done;
@@ -103,8 +99,8 @@ const cli::Program& gonio_program() {
       .name = "structured-light",
       .sentence = "points with their own error from patterns that a projector shows",
       .synopsis = {"--pattern gray|line-shift|cosine --size WIDTHxHEIGHT --out DIR [OPTION]... [manifest.json]",
-                   "--camera NAME --camera NAME --out DIR [OPTION]... -i rig.json [PICTURE]...",
-                   "--camera NAME --projector NAME --out DIR [OPTION]... -i rig.json [PICTURE]..."},
+                   "--camera NAME --camera NAME... --out DIR [OPTION]... -i rig.json [PICTURE]...",
+                   "--camera NAME... --projector NAME --out DIR [OPTION]... -i rig.json [PICTURE]..."},
       .options = options(),
       .operands = {{.name = "PICTURE",
                     .type = Type::text,
@@ -116,12 +112,14 @@ const cli::Program& gonio_program() {
       .takes_out = true,
       .sections_read = {"files", "cameras", "rigs", "images", "projections"},
       .sections_written = {"files", "images", "projections", "clouds"},
-      .files = {{"NAME-000.png", "what the projector shows, frame by frame"},
-                {"VIEW.ply",
-                 "points with sigma, covariance, reprojection_px, pixel_x, pixel_y (of the first camera) and "
-                 "reflected (what the projector's white adds there)"},
-                {"VIEW-CAMERA-codes.exr",
-                 "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: " + refusals()}},
+      .files =
+          {{"NAME-000.png", "what the projector shows, frame by frame"},
+           {"VIEW.ply",
+            "points with sigma, covariance, reprojection_px, pixel_x, pixel_y (of the first camera, or of the one that "
+            "`camera` counts), reflected (what the projector's white adds there) and, of colour pictures, red, green "
+            "and blue of that, linear"},
+           {"VIEW-CAMERA-codes.exr",
+            "column, row, sigma.column, sigma.row: the projector's pixel; reflected; refusal: " + refusals()}},
       .exits = {{Exit::negative, "a view has no point"},
                 {Exit::quality,
                  "cameras, or a projector's columns and rows, contradict each other by more than three times "
