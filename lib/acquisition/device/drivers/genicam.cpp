@@ -233,8 +233,20 @@ class GenicamCamera : public CameraDevice, AravisCamera {
     }
   }
 
+  // A frame that was not whole may still come, after the next trigger, and be taken for that one's.
+  void drain() {
+    const auto until = after(stray_s);
+    const auto next = [&] {  // a camera that runs by itself sends for ever
+      return in_doubt_ && Clock::now() < until
+                 ? arv_stream_timeout_pop_buffer(stream_.get(), static_cast<guint64>(1e6 * stray_s))
+                 : arv_stream_try_pop_buffer(stream_.get());
+    };
+    while (ArvBuffer* old = next()) arv_stream_push_buffer(stream_.get(), old);
+    in_doubt_ = true;  // until a whole one came
+  }
+
   RawFrame grab(const Shot& shot) {
-    while (ArvBuffer* old = arv_stream_try_pop_buffer(stream_.get())) arv_stream_push_buffer(stream_.get(), old);
+    drain();
     const std::uint64_t missing_before = missing_packets();
     if (single_) ask(arv_camera_start_acquisition);
     if (commanded_) ask(arv_camera_software_trigger);
@@ -246,6 +258,7 @@ class GenicamCamera : public CameraDevice, AravisCamera {
                                           : "does anything come on " + settings_.trigger + "?");
     if (single_) ask(arv_camera_stop_acquisition);
     RawFrame frame = frame_of(buffer.get(), missing_before);
+    in_doubt_ = frame.incomplete_packets > 0;
     arv_stream_push_buffer(stream_.get(), buffer.release());
     return frame;
   }
@@ -307,6 +320,8 @@ class GenicamCamera : public CameraDevice, AravisCamera {
       frame.chunk_frame_id = FrameCount::number_of_chunk(static_cast<std::uint64_t>(id), counted, frame.frame_id);
   }
 
+  static constexpr double stray_s = 0.2;
+  bool in_doubt_ = false;
   std::mutex one_at_a_time_;
   Held<ArvStream> stream_;
   Held<ArvChunkParser> chunks_;
