@@ -154,7 +154,8 @@ std::size_t unambiguous(const Codes& codes, std::span<std::uint32_t> pixels) {
       clusters[0].join(own);
       continue;
     }
-    std::erase_if(clusters, [&own](const Cluster& c) { return own.near(c) && (own.join(c), true); });
+    while (std::erase_if(clusters, [&own](const Cluster& c) { return own.near(c) && (own.join(c), true); }) > 0) {
+    }
     clusters.push_back(own);
   }
   if (clusters.size() == 1) return pixels.size();

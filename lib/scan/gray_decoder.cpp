@@ -181,6 +181,9 @@ class GrayDecoder {
       for (std::size_t i = 0; i < count; ++i) read.lit_and_dark[i] = white[i] + black[i];
       std::copy_n(&codes_.reflected[first], count, read.reflected.begin());
       judge_bits(read, limit, inverse_frame.has_value(), verdict);
+      if (moves && std::ranges::count(verdict.moved, 0u) < static_cast<std::ptrdiff_t>(pixels_of_block))
+        for (std::size_t i = 0; i < count; ++i)  // what is full is less than it should be
+          if (white_.full(first + i) || own.full(first + i) || inverse.full(first + i)) verdict.moved[i] = 0;
       note_bits(verdict, bit, count,
                 {&gray[first], &codes_.refusal[first], coarse ? &least_share_[first] : nullptr,
                  direct != shares_.end() ? &direct->second[first] : nullptr, moves});

@@ -1,6 +1,8 @@
 // Why pixels are refused: what moved, what spreads light beneath its surface, what two places say they show.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scan/decode.h"
 #include "scan/scan_world.h"
 
@@ -60,6 +62,27 @@ TEST(Reasons, WhatMovedIsRefusedAndWhatStoodIsKept) {
       EXPECT_LT(s.right, 1e-4);
     }
   }
+}
+
+// Exposed two and a half times too long: sums of readings that are full are less than they should be.
+TEST(Reasons, WhatIsFullDidNotMove) {
+  const ScanWorld world;
+  const Sequence sequence = gray_sequence(480, 360, both);
+  const tests::Recorder recorder(world, world.left, sequence);
+  DecodeRequest r;
+  r.sequence = sequence, r.width = world.left.width, r.height = world.left.height;
+  r.noise = manifest::Noise{world.gain, world.read};
+  r.read = [&](std::size_t frame) {
+    CameraFrame f = recorder(frame);
+    f.saturated.assign(f.light.size(), 0);
+    for (std::size_t i = 0; i < f.light.size(); ++i) {
+      // Some of it by way of other things, whatever is shown.
+      f.light[i] = 2.5f * f.light[i] + (sequence.frames[frame].what == Shown::What::black ? 0.0f : 0.3f);
+      if (f.light[i] >= 1) f.light[i] = 1, f.saturated[i] = 1;
+    }
+    return f;
+  };
+  EXPECT_EQ(std::ranges::count(decode(r).refusal, Refusal::motion), 0);
 }
 
 TEST(Reasons, CosinesThatAThingLosesAreRefused) {
