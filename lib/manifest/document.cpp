@@ -16,6 +16,7 @@
 #include "manifest/frame_loops.h"
 #include "manifest/section_tables.h"
 #include "manifest/sections/acceptance.h"
+#include "manifest/sections/alignment.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/cloud.h"
@@ -88,6 +89,8 @@ void for_each_section(D& d, const Visit& visit) {
   visit("projections", d.projections);
   visit("clouds", d.clouds);
   visit("registration", d.registration);
+  visit("outlines", d.outlines);
+  visit("alignments", d.alignments);
   visit("contrasts", d.contrasts);
   visit("reliefs", d.reliefs);
   visit("ground_noises", d.ground_noises);

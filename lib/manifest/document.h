@@ -56,6 +56,8 @@ struct Document {
   std::map<std::string, Projection> projections;
   std::map<std::string, Cloud> clouds;
   AtMostOne<Registration> registration;
+  std::vector<Outline> outlines;
+  std::vector<Alignment> alignments;
   std::vector<Contrast> contrasts;
   std::map<std::string, ReliefMap> reliefs;
   std::map<std::string, GroundNoiseFit> ground_noises;

@@ -8,6 +8,7 @@
 #include "manifest/codec.h"
 #include "manifest/fields.h"
 #include "manifest/image_list.h"
+#include "manifest/sections/alignment.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/cloud.h"
@@ -341,6 +342,28 @@ void check_scans(const Document& d) {
   }
 }
 
+void must_be_object(const Document& d, const std::string& id, const std::string& where) {
+  for (const Object& object : d.objects)
+    if (object.id == id) return;
+  throw Error(Exit::data, where, "names \"" + id + "\", which is not in objects");
+}
+
+// Lamps and cameras of an alignment are those that it was made with: they may have gone since.
+void check_alignments(const Document& d) {
+  for (std::size_t i = 0; i < d.outlines.size(); ++i) {
+    const Outline& outline = d.outlines[i];
+    const std::string at = place(d, "/outlines/" + std::to_string(i));
+    if (!index_of_image(d, outline.image))
+      throw Error(Exit::data, at + "/image", "names \"" + outline.image + "\", which is not in images");
+    must_be_object(d, outline.object, at + "/object");
+    must_exist(d.lights, "lights", outline.light, at + "/light");
+    must_exist(d.files, "files", outline.mask, at + "/mask");
+    must_exist(d.files, "files", outline.file, at + "/file");
+  }
+  for (std::size_t i = 0; i < d.alignments.size(); ++i)
+    must_be_object(d, d.alignments[i].object, place(d, "/alignments/" + std::to_string(i) + "/object"));
+}
+
 }  // namespace
 
 void check_references(const Document& d) {
@@ -353,6 +376,7 @@ void check_references(const Document& d) {
   check_plans(d);
   check_nrsfm(d);
   check_scans(d);
+  check_alignments(d);
   unique_ids(d.objects, place(d, "/objects"));
   for (std::size_t i = 0; i < d.objects.size(); ++i) {
     const std::string at = place(d, "/objects/" + std::to_string(i));

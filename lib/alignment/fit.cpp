@@ -1,0 +1,317 @@
+// See fit.h.
+#include "alignment/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "alignment/rim_covariance.h"
+#include "alignment/seen_points.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "linear/solve.h"
+
+namespace gonio::alignment {
+namespace {
+
+using Eigen::Index;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// A whitened residual and what the loss makes of it.
+struct Loss {
+  double width, reach;
+  // rho of an offset and the weight of its square; beyond reach it stays what it is there.
+  double cost(double d) const {
+    const double s = std::min(std::abs(d), reach) / width;
+    return width * width * std::log1p(s * s);
+  }
+  double weight(double d) const { return 1 / (1 + d * d / (width * width)); }
+};
+
+// One sighting's part of the sum: cost, and where slopes are asked for, J'WJ and J'Wr.
+struct Part {
+  double cost = 0;
+  Eigen::MatrixXd h;
+  Eigen::VectorXd g;
+};
+
+class Rims final : public optim::Descent {
+ public:
+  Rims(const Question& question, const Setting& start, const Stage& stage, const std::vector<double>& sigma,
+       const std::vector<SeenPoints>& seen)
+      : q_(question), stage_(stage), sigma_(sigma), seen_(seen), at_(start), next_(start) {
+    count_ = static_cast<Index>(numbers_of(q_.freedoms));
+  }
+  const Setting& setting() const { return at_; }
+  const Eigen::MatrixXd& information() const { return h_; }
+  double cost_at(const Setting& s) const { return sum(s, false).cost; }
+
+  void linearise() override {
+    Part all = sum(at_, true);
+    h_ = std::move(all.h), g_ = std::move(all.g);
+  }
+  optim::Proposal propose(double damping) override {
+    Eigen::MatrixXd damped = h_;
+    for (Index i = 0; i < count_; ++i) damped(i, i) += damping * std::max(h_(i, i), 1e-30);
+    const Eigen::VectorXd step = linear::Ldlt(damped).solve(Eigen::VectorXd(-g_));
+    next_ = moved(at_, q_.freedoms, {step.data(), step.data() + step.size()});
+    return {.promised = -(2 * g_.dot(step) + step.dot(h_ * step))};
+  }
+  double evaluate() override { return cost_at(next_); }
+  void accept() override { at_ = next_; }
+
+  Part sum(const Setting& s, bool slopes) const {
+    const GroundAxes axes = ground_axes(s);
+    Part all = sum_of_points(s, axes, slopes);
+    contacts(s, axes, all, slopes);
+    priors(s, all, slopes);
+    return all;
+  }
+  Eigen::MatrixXd of_points(const Setting& s) const { return sum_of_points(s, ground_axes(s), true).h; }
+
+ private:
+  Part sum_of_points(const Setting& s, const GroundAxes& axes, bool slopes) const {
+    std::vector<Part> parts(q_.sightings.size());
+    parallel_for(0, parts.size(), [&](std::size_t i) { parts[i] = part(s, axes, i, slopes); });
+    Part all;
+    if (slopes) all.h = Eigen::MatrixXd::Zero(count_, count_), all.g = Eigen::VectorXd::Zero(count_);
+    for (const Part& p : parts) {
+      all.cost += p.cost;
+      if (slopes && std::isfinite(p.cost)) all.h += p.h, all.g += p.g;
+    }
+    return all;
+  }
+  Part part(const Setting& s, const GroundAxes& axes, std::size_t index, bool slopes) const {
+    const Sighting& sighting = q_.sightings[index];
+    Part p;
+    if (slopes) p.h = Eigen::MatrixXd::Zero(count_, count_), p.g = Eigen::VectorXd::Zero(count_);
+    const ModelRim rim(s, sighting.subject);
+    if (!rim.exists()) return p.cost = infinite, p;
+    const double sigma = sigma_[index];
+    const Loss loss{(stage_.width_px > 0 ? stage_.width_px : 2.5 * sigma) / sigma, stage_.reach_px / sigma};
+    std::vector<double> row(static_cast<std::size_t>(count_));
+    const auto add = [&](const RimPlace& place, Vec2 normal, double sign, double offset, double share) {
+      p.cost += share * loss.cost(offset);
+      if (!slopes) return;
+      slopes_of(s, q_.freedoms, axes, sighting.subject.station, sighting.subject.body, sighting.subject.lamp,
+                place.mesh_point, normal, row.data());
+      const Eigen::Map<const Eigen::VectorXd> j(row.data(), count_);
+      const double w = share * loss.weight(offset);
+      p.h.selfadjointView<Eigen::Lower>().rankUpdate(j, w / (sigma * sigma));
+      p.g += (w * offset * sign / sigma) * j;
+    };
+    const auto every = static_cast<std::size_t>(stage_.every);
+    for (std::size_t i = 0; i < sighting.points.size(); i += every) {
+      const RimPoint& point = sighting.points[i];
+      if (!point.counts) continue;
+      const auto place = rim.nearest(point.pixel, point.outward, stage_.reach_px);
+      if (place)
+        add(*place, place->outward, -1, place->distance_px / sigma, stage_.every);
+      else
+        p.cost += stage_.every * loss.cost(infinite);
+    }
+    if (stage_.both_ways) {
+      const double spacing = std::max<double>(stage_.every, rim.length_px() / 2000);
+      for (const RimPlace& place : rim.places(spacing)) {
+        if (sighting.unseen && sighting.unseen(place.pixel)) continue;
+        const auto near = seen_[index].nearest(place.pixel, place.outward, stage_.reach_px);
+        if (!near) {
+          p.cost += spacing * loss.cost(infinite);
+          continue;
+        }
+        const RimPoint& point = sighting.points[*near];
+        if (!point.counts) continue;
+        const double d = dot(point.outward, place.pixel - point.pixel);
+        add(place, point.outward, 1, d / sigma, spacing);
+      }
+    }
+    if (slopes) p.h.triangularView<Eigen::StrictlyUpper>() = p.h.transpose();
+    return p;
+  }
+
+  void contacts(const Setting& s, const GroundAxes& axes, Part& all, bool slopes) const {
+    if (!s.ground) return;
+    for (const Contact& c : q_.contacts) {
+      const auto& points = s.bodies[c.body].shape->positions_m();
+      std::size_t lowest = 0;
+      double least = infinite;
+      for (std::size_t v = 0; v < points.size(); ++v) {
+        const double h = height_of(s, c.body, points[v]);
+        if (h < least) least = h, lowest = v;
+      }
+      all.cost += least * least / (c.sigma_m * c.sigma_m);
+      if (!slopes) continue;
+      std::vector<double> row(static_cast<std::size_t>(count_));
+      height_slopes(s, q_.freedoms, axes, c.body, points[lowest], row.data());
+      const Eigen::Map<const Eigen::VectorXd> j(row.data(), count_);
+      all.h += j * j.transpose() / (c.sigma_m * c.sigma_m);
+      all.g += j * (least / (c.sigma_m * c.sigma_m));
+    }
+  }
+  void priors(const Setting& s, Part& all, bool slopes) const {
+    const std::vector<double> change = change_between(q_.stated, s, q_.freedoms);
+    Index k = 0;
+    for (const Freedom& f : q_.freedoms)
+      for (std::size_t i = 0; i < f.size(); ++i, ++k) {
+        if (!(f.prior_sigma > 0)) continue;
+        const double w = 1 / (f.prior_sigma * f.prior_sigma), c = change[static_cast<std::size_t>(k)];
+        all.cost += w * c * c;
+        if (slopes) all.h(k, k) += w, all.g(k) += w * c;
+      }
+  }
+
+  const Question& q_;
+  const Stage& stage_;
+  const std::vector<double>& sigma_;
+  const std::vector<SeenPoints>& seen_;
+  Setting at_, next_;
+  Index count_ = 0;
+  Eigen::MatrixXd h_;
+  Eigen::VectorXd g_;
+};
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0;
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+// What each sighting's points are off, and by how much its model's rim is accounted for.
+SightingFit offsets_of(const Setting& s, const Sighting& sighting, const SeenPoints& seen, double reach) {
+  SightingFit fit;
+  fit.offset_px.assign(sighting.points.size(), std::numeric_limits<double>::quiet_NaN());
+  fit.weight.assign(sighting.points.size(), 0);
+  const ModelRim rim(s, sighting.subject);
+  if (!rim.exists()) return fit;
+  std::vector<double> sizes;
+  std::size_t counts = 0;
+  for (std::size_t i = 0; i < sighting.points.size(); ++i) {
+    const RimPoint& point = sighting.points[i];
+    if (!point.counts) continue;
+    ++counts;
+    const auto place = rim.nearest(point.pixel, point.outward, reach);
+    if (!place) continue;
+    fit.offset_px[i] = place->distance_px;
+    sizes.push_back(std::abs(place->distance_px));
+  }
+  fit.sigma_px = std::max(0.01, 1.4826 * median(sizes));
+  const Loss loss{2.5, infinite};
+  double squares = 0, sum = 0, met = 0;
+  const double near = 1 + 3 * fit.sigma_px;
+  for (std::size_t i = 0; i < sighting.points.size(); ++i) {
+    const double d = fit.offset_px[i];
+    if (std::isfinite(d)) fit.weight[i] = loss.weight(d / fit.sigma_px), met += std::abs(d) < near;
+    if (fit.weight[i] > 0.1)
+      squares += d * d, sum += d, ++fit.counted;
+    else
+      ++fit.left_out;
+  }
+  if (fit.counted > 0) {
+    const auto n = static_cast<double>(fit.counted);
+    fit.rms_px = std::sqrt(squares / n), fit.mean_px = sum / n;
+  }
+  fit.met = counts > 0 ? met / static_cast<double>(counts) : 0;
+  std::size_t visible = 0, explained = 0;
+  for (const RimPlace& place : rim.places(1)) {
+    if (sighting.unseen && sighting.unseen(place.pixel)) continue;
+    ++visible;
+    explained += seen.nearest(place.pixel, place.outward, near).has_value();
+  }
+  fit.explained = visible > 0 ? static_cast<double>(explained) / static_cast<double>(visible) : 0;
+  return fit;
+}
+
+}  // namespace
+
+std::vector<Stage> stages_from(double start_px) {
+  std::vector<Stage> stages;
+  for (double width = start_px / 2; width > 3; width /= 3)
+    stages.push_back({.reach_px = 4 * width,
+                      .width_px = width,
+                      .both_ways = true,
+                      .every = 3,
+                      .most_steps = 12,
+                      .small_fall = 1e-3});
+  stages.push_back(
+      {.reach_px = 8, .width_px = 1.5, .both_ways = true, .every = 2, .most_steps = 12, .small_fall = 1e-4});
+  stages.push_back({.reach_px = 5, .width_px = 0, .most_steps = 15, .small_fall = 1e-6});
+  stages.push_back({.reach_px = 5, .width_px = 0, .most_steps = 15, .small_fall = 1e-8});
+  return stages;
+}
+
+namespace {
+
+// Down the stages, from `start`: where it ends, the last descent, and each sighting's standard deviation at its last
+// stage.
+struct Descent {
+  Setting setting;
+  optim::Descended last;
+  std::vector<double> sigma;
+};
+Descent go_down(const Setting& start, const Question& question, const std::vector<Stage>& stages,
+                const std::vector<SeenPoints>& seen) {
+  Descent d{start, {}, std::vector<double>(question.sightings.size(), 1.0)};
+  for (const Stage& stage : stages) {
+    if (!(stage.width_px > 0))
+      for (std::size_t i = 0; i < d.sigma.size(); ++i)
+        d.sigma[i] = offsets_of(d.setting, question.sightings[i], seen[i], stage.reach_px).sigma_px;
+    Rims rims(question, d.setting, stage, d.sigma, seen);
+    const double cost = rims.cost_at(d.setting);
+    if (!std::isfinite(cost))
+      throw Error(Exit::data, "start", "has a rim behind a camera or above its lamp", "state other poses");
+    optim::Limits limits;
+    limits.most_steps = stage.most_steps, limits.most_refusals = 8;
+    limits.small_fall = {stage.small_fall, 0}, limits.small_promise = {stage.small_fall, 0};
+    d.last = optim::descend(rims, cost, limits);
+    d.setting = rims.setting();
+  }
+  return d;
+}
+
+std::vector<SeenPoints> seen_points(const Question& question) {
+  std::vector<SeenPoints> seen;
+  for (const Sighting& s : question.sightings) seen.emplace_back(s.points);
+  return seen;
+}
+
+}  // namespace
+
+Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages) {
+  return go_down(start, question, stages, seen_points(question)).setting;
+}
+
+Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages) {
+  const std::vector<SeenPoints> seen = seen_points(question);
+  Descent down = go_down(start, question, stages, seen);
+  Fitted f;
+  f.setting = std::move(down.setting), f.descended = down.last, f.cost = down.last.cost;
+  const Stage last = stages.back();
+  f.sightings.resize(question.sightings.size());
+  double squares = 0, counted = 0, explained = 0, met = 0, variance = 0;
+  for (std::size_t i = 0; i < f.sightings.size(); ++i) {
+    f.sightings[i] = offsets_of(f.setting, question.sightings[i], seen[i], last.reach_px);
+    const SightingFit& s = f.sightings[i];
+    const auto n = static_cast<double>(s.counted);
+    down.sigma[i] = s.sigma_px;
+    squares += n * s.rms_px * s.rms_px, variance += n * s.sigma_px * s.sigma_px, counted += n;
+    explained += n * s.explained, met += n * s.met;
+  }
+  if (counted > 0) {
+    f.rms_px = std::sqrt(squares / counted), f.sigma_px = std::sqrt(variance / counted);
+    f.explained = explained / counted, f.met = met / counted;
+  }
+  if (!question.freedoms.empty()) {
+    const Rims rims(question, f.setting, last, down.sigma, seen);
+    find_covariance(f, question, rims.sum(f.setting, true).h, rims.of_points(f.setting));
+  }
+  return f;
+}
+
+double cost_of(const Setting& setting, const Question& question, const Stage& stage) {
+  const std::vector<SeenPoints> seen = seen_points(question);
+  const std::vector<double> sigma(question.sightings.size(), 1.0);
+  return Rims(question, setting, stage, sigma, seen).cost_at(setting);
+}
+
+}  // namespace gonio::alignment

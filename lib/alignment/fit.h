@@ -1,0 +1,85 @@
+// Settings under which rims of models lie on rims that were seen: least squares of normal offsets, with exact slopes.
+//
+//   minimise  sum over seen points  rho(d_i / sigma)  +  [sum over places of the models' rims rho(d_k / sigma)]  +
+//   priors
+//
+// d_i: normal offset, px, of a seen point from the nearest place of its model's rim that faces the same way; d_k: of a
+// place of the model's rim from the nearest seen point, only while the two are still far apart (these are no data: they
+// keep a model from hiding where nothing was seen). As rims of meshes are made of the pictures of edges, the slope of
+// an offset by any number of the setting is that of the edge's point, times the normal: nothing is rasterised, and
+// nothing is differenced. rho is Cauchy's loss; its width falls in stages.
+//
+// Errors along a rim are not independent: neighbours share pixels, masks and whatever else is wrong there. The
+// covariance is H^-1 M H^-1 with M = sum over pairs of points of one loop, gamma(arc between them) g_i g_j', gamma an
+// exponential of the length over which what is left is alike, by its autocorrelation, pooled over the loops of one kind
+// (White 1980; Liang & Zeger 1986).
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "alignment/model_rim.h"
+#include "alignment/observed_rim.h"
+#include "optim/descent.h"
+
+namespace gonio::alignment {
+
+// What one photograph shows of one rim.
+struct Sighting {
+  RimSubject subject;
+  std::vector<RimPoint> points;  // straightened
+  // Of a place of the picture, straightened: could a rim of this subject not be seen there, because something stands
+  // before it or the picture ends? Empty: it could be everywhere.
+  std::function<bool(Vec2)> unseen;
+};
+struct Contact {  // the lowest vertex of a body touches the ground, as far as that is known
+  std::size_t body = 0;
+  double sigma_m = 1e-4;
+};
+struct Question {
+  std::vector<Sighting> sightings;
+  std::vector<Freedom> freedoms;
+  std::vector<Contact> contacts;
+  Setting stated;  // what priors hold to
+};
+struct Stage {
+  double reach_px = 6;  // farther apart, a point and a rim are not each other's
+  double width_px = 1;  // of the loss; 0: by what is left, sighting by sighting
+  bool both_ways = false;
+  int every = 1;  // of the points, one in so many
+  int most_steps = 30;
+  double small_fall = 1e-6;
+};
+// From anywhere within `start_px` of the rims to the end.
+std::vector<Stage> stages_from(double start_px);
+
+struct SightingFit {
+  std::vector<double> offset_px;   // of each point from the model's rim, + outside; NaN: none within reach
+  std::vector<double> weight;      // of the loss, 0 to 1
+  double sigma_px = 0;             // robust: of one point
+  double rms_px = 0, mean_px = 0;  // of the points that count for more than a tenth
+  std::size_t counted = 0, left_out = 0;
+  double explained = 0;  // share of the model's visible rim with points within three sigma and a pixel
+  double met = 0;        // share of the points with a rim there
+};
+struct Fitted {
+  Setting setting;
+  double cost = 0;  // of the last stage
+  optim::Descended descended;
+  std::vector<SightingFit> sightings;
+  double rms_px = 0, sigma_px = 0, correlation_px = 0, explained = 0, met = 0;
+  // Of the numbers of the freedoms, with correlated errors; of what nothing holds, huge: see `open`.
+  Eigen::MatrixXd covariance;
+  Eigen::MatrixXd information;  // H, of independent errors, priors included
+};
+
+// Error(data) where a rim of the start does not exist (behind a camera, above a lamp).
+Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
+// The same without figures or covariance: where it ends.
+Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
+// Cost of the setting alone, both ways, each point's share bounded: for choosing between starts. Infinite where rims do
+// not exist.
+double cost_of(const Setting& setting, const Question& question, const Stage& stage);
+
+}  // namespace gonio::alignment
