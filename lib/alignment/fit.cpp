@@ -28,6 +28,11 @@ struct Loss {
   double weight(double d) const { return 1 / (1 + d * d / (width * width)); }
 };
 
+// Of a body that dips into the ground, what is beneath has no rim that could be seen: the ground's own cut is there.
+bool beneath(const Setting& s, std::size_t body, const RimPlace& place) {
+  return s.ground && height_of(s, body, place.mesh_point) < 0;
+}
+
 // One sighting's part of the sum: cost, and where slopes are asked for, J'WJ and J'Wr.
 struct Part {
   double cost = 0;
@@ -105,6 +110,7 @@ class Rims final : public optim::Descent {
       const RimPoint& point = sighting.points[i];
       if (!point.counts) continue;
       const auto place = rim.nearest(point.pixel, point.outward, stage_.reach_px);
+      if (place && !stage_.both_ways && beneath(s, sighting.subject.body, *place)) continue;
       if (place)
         add(*place, place->outward, -1, place->distance_px / sigma, stage_.every);
       else
@@ -191,7 +197,10 @@ SightingFit offsets_of(const Setting& s, const Sighting& sighting, const SeenPoi
     if (!point.counts) continue;
     ++counts;
     const auto place = rim.nearest(point.pixel, point.outward, reach);
-    if (!place) continue;
+    if (!place || beneath(s, sighting.subject.body, *place)) {
+      counts -= place.has_value();
+      continue;
+    }
     fit.offset_px[i] = place->distance_px;
     sizes.push_back(std::abs(place->distance_px));
   }
@@ -214,7 +223,7 @@ SightingFit offsets_of(const Setting& s, const Sighting& sighting, const SeenPoi
   fit.met = counts > 0 ? met / static_cast<double>(counts) : 0;
   std::size_t visible = 0, explained = 0;
   for (const RimPlace& place : rim.places(1)) {
-    if (sighting.unseen && sighting.unseen(place.pixel)) continue;
+    if (beneath(s, sighting.subject.body, place) || (sighting.unseen && sighting.unseen(place.pixel))) continue;
     ++visible;
     explained += seen.nearest(place.pixel, place.outward, near).has_value();
   }

@@ -9,6 +9,8 @@
 // an offset by any number of the setting is that of the edge's point, times the normal: nothing is rasterised, and
 // nothing is differenced. rho is Cauchy's loss; its width falls in stages.
 //
+// A rim's place that lies beneath the ground is no rim that can be seen, and what is seen beside it does not count.
+//
 // Errors along a rim are not independent: neighbours share pixels, masks and whatever else is wrong there. The
 // covariance is H^-1 M H^-1 with M = sum over pairs of points of one loop, gamma(arc between them) g_i g_j', gamma an
 // exponential of the length over which what is left is alike, by its autocorrelation, pooled over the loops of one kind

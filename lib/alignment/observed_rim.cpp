@@ -127,9 +127,10 @@ void sample(const std::vector<Vec2>& loop, std::uint32_t number, std::vector<Rim
 }
 
 // The half level of what a Gaussian smoothed runs sigma^2 kappa / 2 towards the middle of the bend (Marr & Hildreth
-// 1980's displacement of edges; Lindeberg 1994): undone with the bend between five points before and behind.
+// 1980's displacement of edges; Lindeberg 1994): undone with the bend between some points before and behind.
 void unbend(std::vector<RimPoint>& points, double sigma_px) {
-  constexpr std::size_t reach = 5;
+  const auto reach = static_cast<std::size_t>(std::lround(2 + 2 * sigma_px));
+  const double blur = sigma_px * sigma_px + 1.0 / 12;  // with the pixel's own square
   std::vector<Vec2> at(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     at[i] = points[i].pixel;
@@ -141,7 +142,7 @@ void unbend(std::vector<RimPoint>& points, double sigma_px) {
     const double turn = std::atan2(before.outward.x * after.outward.y - before.outward.y * after.outward.x,
                                    dot(before.outward, after.outward));
     const double kappa = std::clamp(turn / length, -0.5 / sigma_px, 0.5 / sigma_px);
-    at[i] = points[i].pixel + points[i].outward * (0.5 * sigma_px * sigma_px * kappa);
+    at[i] = points[i].pixel + points[i].outward * (0.5 * blur * kappa);
   }
   for (std::size_t i = 0; i < points.size(); ++i) points[i].pixel = at[i];
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alignment/seen_points.h"
 #include "linear/solve.h"
 
 namespace gonio::alignment {
@@ -51,7 +52,7 @@ double correlation_length(const std::vector<const Sighting*>& sightings, const s
 
 // M of fit.h for one sighting, by the numbers, and its variance of weighted offsets in units of sigma.
 void add_meat(const Setting& s, const Question& q, std::size_t index, const SightingFit& fit, double length_px,
-              Eigen::MatrixXd& meat) {
+              double repeated, Eigen::MatrixXd& meat) {
   const Sighting& sighting = q.sightings[index];
   const auto count = static_cast<Index>(numbers_of(q.freedoms));
   const GroundAxes axes = ground_axes(s);
@@ -72,7 +73,7 @@ void add_meat(const Setting& s, const Question& q, std::size_t index, const Sigh
     variance += fit.weight[i] * fit.weight[i] * fit.offset_px[i] * fit.offset_px[i] / (fit.sigma_px * fit.sigma_px);
   }
   if (used.empty()) return;
-  variance /= static_cast<double>(used.size());
+  variance *= repeated / static_cast<double>(used.size());
   const auto& points = sighting.points;
   // An exponential of that length is positive definite whatever the arcs are; the measured autocorrelation need not be.
   const double decay = 2 / std::max(length_px, 1e-3), reach = 6 / decay;
@@ -95,6 +96,33 @@ double bend_of_loss(const Fitted& f) {
   return weight > 0 ? std::max(0.1, bend / weight) : 1;
 }
 
+// How far the errors of two photographs of one rim are one error: correlation of the offsets of points beside each
+// other. One mask that serves under several lamps is one observation.
+double likeness(const Sighting& a, const SightingFit& fit_a, const Sighting& b, const SightingFit& fit_b) {
+  const SeenPoints others(b.points);
+  double ab = 0, aa = 0, bb = 0;
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    if (!(fit_a.weight[i] > 0)) continue;
+    const auto k = others.nearest(a.points[i].pixel, a.points[i].outward, 1);
+    if (!k || !(fit_b.weight[*k] > 0)) continue;
+    const double x = fit_a.weight[i] * fit_a.offset_px[i], y = fit_b.weight[*k] * fit_b.offset_px[*k];
+    ab += x * y, aa += x * x, bb += y * y;
+  }
+  return aa > 0 && bb > 0 ? std::max(0.0, ab / std::sqrt(aa * bb)) : 0;
+}
+
+// Of each sighting: by how much its variance grows because others of the same rim err alike.
+std::vector<double> repetition(const Question& q, const Fitted& f) {
+  std::vector<double> factor(q.sightings.size(), 1);
+  for (std::size_t i = 0; i < factor.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (q.sightings[i].subject == q.sightings[k].subject) {
+        const double like = likeness(q.sightings[i], f.sightings[i], q.sightings[k], f.sightings[k]);
+        factor[i] += like, factor[k] += like;
+      }
+  return factor;
+}
+
 }  // namespace
 
 void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eigen::MatrixXd& by_points) {
@@ -102,6 +130,7 @@ void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eige
   f.information = h;
   Eigen::MatrixXd of_points = Eigen::MatrixXd::Zero(count, count);
   double correlation = 0, weight = 0;
+  const std::vector<double> repeated = repetition(q, f);
   double all_points = 1;
   for (const SightingFit& fit : f.sightings) all_points += static_cast<double>(fit.counted);
   for (const bool shadows : {false, true}) {
@@ -117,7 +146,7 @@ void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eige
     correlation += points * length, weight += points;
     for (std::size_t i = 0; i < q.sightings.size(); ++i)
       if (q.sightings[i].subject.lamp.has_value() == shadows)
-        add_meat(f.setting, q, i, f.sightings[i], length, of_points);
+        add_meat(f.setting, q, i, f.sightings[i], length, repeated[i], of_points);
   }
   // Priors and contacts are independent of all that: their part of M is their part of H. The points' part of H has the
   // weights of the squares; the slope of the loss's own slope is what counts for where the minimum moves (Huber 1964).

@@ -1,0 +1,221 @@
+// See alignment_entry.h.
+#include "alignment/alignment_entry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "manifest/document.h"
+#include "manifest/image_list.h"
+#include "manifest/sections/camera.h"
+#include "manifest/sections/image.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/object.h"
+
+namespace gonio::alignment {
+namespace {
+
+using Eigen::Index;
+
+std::vector<double> numbers(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+// Where the numbers of a block begin; -1: it is held.
+Index place_of(const std::vector<Freedom>& freedoms, Block block, std::size_t which) {
+  Index at = 0;
+  for (const Freedom& f : freedoms) {
+    if (f.block == block && f.which == which) return at;
+    at += static_cast<Index>(f.size());
+  }
+  return -1;
+}
+double sigma_at(const Fitted& f, Index at) {
+  return std::sqrt(std::max(0.0, f.covariance(at, at)));
+}
+std::vector<double> sigmas(const Fitted& f, Index at) {
+  return at < 0 ? std::vector<double>{0, 0, 0}
+                : std::vector<double>{sigma_at(f, at), sigma_at(f, at + 1), sigma_at(f, at + 2)};
+}
+// Of two blocks of three numbers, 6 x 6, row by row; zeros for what is held.
+std::vector<double> joint(const Fitted& f, Index first, Index second) {
+  std::vector<double> out(36, 0);
+  for (Index i = 0; i < 6; ++i)
+    for (Index k = 0; k < 6; ++k) {
+      const Index a = i < 3 ? first : second, b = k < 3 ? first : second;
+      if (a >= 0 && b >= 0) out[static_cast<std::size_t>(6 * i + k)] = f.covariance(a + i % 3, b + k % 3);
+    }
+  return out;
+}
+
+manifest::Pose<frame::World, frame::Object> pose_of(const Body& body) {
+  manifest::Pose<frame::World, frame::Object> pose;
+  pose.rotation = body.world_from_object.rotation, pose.translation_m = body.world_from_object.translation_m;
+  return pose;
+}
+
+// Of the body's own frame: its centre's shift and what the turn about that adds at the frame's origin.
+manifest::PoseSigma sigma_of_origin(const Fitted& f, Index turn, Index shift, Vec3 arm) {
+  manifest::PoseSigma sigma{sigmas(f, turn), {}};
+  const std::vector<double> c = joint(f, turn, shift);
+  const std::array<std::array<double, 3>, 3> of_turn{{{0, arm.z, -arm.y}, {-arm.z, 0, arm.x}, {arm.y, -arm.x, 0}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<double, 6> row{};
+    for (std::size_t j = 0; j < 3; ++j) row[j] = of_turn[k][j];
+    row[3 + k] = 1;
+    double variance = 0;
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 6; ++j) variance += row[i] * c[6 * i + j] * row[j];
+    sigma.translation_m.push_back(std::sqrt(std::max(0.0, variance)));
+  }
+  return sigma;
+}
+
+bool scaled(const std::vector<Freedom>& freedoms, std::size_t body, bool& uniform) {
+  for (const Freedom& f : freedoms)
+    if (f.block == Block::body_scale && f.which == body) return uniform = f.uniform, true;
+  return false;
+}
+
+manifest::AlignedLight light_entry(const AlignmentInput& in, std::size_t lamp, const Fitted& f) {
+  manifest::AlignedLight light;
+  light.light = in.lamps[lamp], light.position_m = numbers(f.setting.lamps_m[lamp]);
+  const Index at = place_of(in.question.freedoms, Block::lamp_shift, lamp);
+  for (Index i = 0; at >= 0 && i < 3; ++i)
+    for (Index k = 0; k < 3; ++k) light.covariance_m2.push_back(f.covariance(at + i, at + k));
+  return light;
+}
+
+manifest::AlignedCamera camera_entry(const AlignmentInput& in, std::size_t station, const Fitted& f) {
+  manifest::AlignedCamera camera;
+  const Station& s = f.setting.stations[station];
+  camera.camera = in.cameras[s.lens], camera.images = in.images_of_station[station];
+  camera.world_from_camera.emplace();
+  camera.world_from_camera->rotation = s.world_from_camera.rotation;
+  camera.world_from_camera->translation_m = s.world_from_camera.translation_m;
+  const auto& freedoms = in.question.freedoms;
+  camera.covariance =
+      joint(f, place_of(freedoms, Block::station_turn, station), place_of(freedoms, Block::station_shift, station));
+  const Index focal = place_of(freedoms, Block::lens_focal, s.lens);
+  if (focal >= 0) {
+    camera.focal_factor = f.setting.lenses[s.lens].fx_px / in.stated.lenses[s.lens].fx_px;
+    camera.sigma["focal_factor"] = {*camera.focal_factor * sigma_at(f, focal)};
+  }
+  return camera;
+}
+
+}  // namespace
+
+manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const Aligned& found) {
+  const Fitted& f = found.fitted;
+  const Body& b = f.setting.bodies[body];
+  const auto& freedoms = in.question.freedoms;
+  manifest::Alignment a;
+  a.object = in.bodies[body], a.verdict = word_of(found.verdict), a.why = found.why;
+  a.world_from_object = pose_of(b), a.centre_m = numbers(b.centre_m());
+  a.covariance = joint(f, place_of(freedoms, Block::body_turn, body), place_of(freedoms, Block::body_shift, body));
+  bool uniform = false;
+  if (scaled(freedoms, body, uniform)) {
+    a.scale = numbers(b.scale);
+    const Index at = place_of(freedoms, Block::body_scale, body);
+    const double s = uniform ? b.scale.x * sigma_at(f, at) : 0;
+    a.sigma["scale"] = uniform ? std::vector<double>{s, s, s}
+                               : std::vector<double>{b.scale.x * sigma_at(f, at), b.scale.y * sigma_at(f, at + 1),
+                                                     b.scale.z * sigma_at(f, at + 2)};
+  }
+  a.rms_px = f.rms_px, a.sigma_px = f.sigma_px, a.correlation_px = f.correlation_px, a.explained = f.explained;
+  a.open = found.open;
+  a.open.insert(a.open.end(), found.symmetries.begin(), found.symmetries.end());
+  for (const Rival& r : found.rivals) a.candidates.push_back({pose_of(r.setting.bodies[body]), r.rms_px, r.explained});
+  for (std::size_t l = 0; l < in.lamps.size(); ++l)
+    if (place_of(freedoms, Block::lamp_shift, l) >= 0) a.lights.push_back(light_entry(in, l, f));
+  for (std::size_t s = 0; s < in.stated.stations.size(); ++s)
+    if (place_of(freedoms, Block::station_turn, s) >= 0 ||
+        place_of(freedoms, Block::lens_focal, in.stated.stations[s].lens) >= 0)
+      a.cameras.push_back(camera_entry(in, s, f));
+  return a;
+}
+
+void enter_figures(const SightingFit& fit, manifest::Outline& outline) {
+  outline.points = static_cast<std::int64_t>(fit.counted + fit.left_out),
+  outline.left_out = static_cast<std::int64_t>(fit.left_out);
+  outline.rms_px = fit.rms_px, outline.mean_px = fit.mean_px, outline.explained = fit.explained;
+}
+
+void move_document(manifest::Document& document, const AlignmentInput& in, std::size_t body, const Aligned& found) {
+  const Fitted& f = found.fitted;
+  const auto& freedoms = in.question.freedoms;
+  const Body& b = f.setting.bodies[body];
+  for (manifest::Object& object : document.objects) {
+    if (object.id != in.bodies[body]) continue;
+    object.world_from_object = pose_of(b);
+    const Index turn = place_of(freedoms, Block::body_turn, body), shift = place_of(freedoms, Block::body_shift, body);
+    if (turn >= 0)
+      object.world_from_object->sigma =
+          sigma_of_origin(f, turn, shift, b.world_from_object.translation_m - b.centre_m());
+  }
+  bool uniform = false;
+  if (scaled(freedoms, body, uniform)) {
+    manifest::MechanismUse& use = document.mechanisms["geometry.shrinkage"];
+    use.on = {in.bodies[body]};
+    const std::array<const char*, 3> names{"x", "y", "z"};
+    const Index at = place_of(freedoms, Block::body_scale, body);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double s = k == 0 ? b.scale.x : k == 1 ? b.scale.y : b.scale.z;
+      use.parameters[names[k]] = 1 - s;
+      use.sigma[names[k]] = {s * sigma_at(f, uniform ? at : at + static_cast<Index>(k))};
+    }
+  }
+  for (std::size_t l = 0; l < in.lamps.size(); ++l) {
+    const Index at = place_of(freedoms, Block::lamp_shift, l);
+    if (at < 0) continue;
+    manifest::Light& light = document.lights.at(in.lamps[l]);
+    light.parameters["position_m"].value = numbers(f.setting.lamps_m[l]);
+    light.sigma["position_m"] = sigmas(f, at);
+  }
+  for (std::size_t s = 0; s < in.stated.stations.size(); ++s) {
+    const Index turn = place_of(freedoms, Block::station_turn, s), shift = place_of(freedoms, Block::station_shift, s);
+    if (turn < 0) continue;
+    for (const std::string& id : in.images_of_station[s]) {
+      auto& image = document.images[*manifest::index_of_image(document, id)];
+      image.world_from_camera.emplace();
+      image.world_from_camera->rotation = f.setting.stations[s].world_from_camera.rotation;
+      image.world_from_camera->translation_m = f.setting.stations[s].world_from_camera.translation_m;
+      image.world_from_camera->sigma = manifest::PoseSigma{sigmas(f, turn), sigmas(f, shift)};
+    }
+  }
+  for (std::size_t c = 0; c < in.cameras.size(); ++c) {
+    if (place_of(freedoms, Block::lens_focal, c) < 0) continue;
+    manifest::Camera& camera = document.cameras.at(in.cameras[c]);
+    const double factor = f.setting.lenses[c].fx_px / in.stated.lenses[c].fx_px;
+    for (double& v : camera.fx_px.value) v *= factor;
+    for (double& v : camera.fy_px.value) v *= factor;
+  }
+}
+
+std::string point_table(const AlignmentInput& in, const Setting& setting, std::size_t sighting,
+                        const SightingFit& fit) {
+  const Sighting& seen = in.question.sightings[sighting];
+  const std::vector<RimPoint>& picture = in.rims[sighting].in_picture;
+  const ModelRim rim(setting, seen.subject);
+  const Body& body = setting.bodies[seen.subject.body];
+  const Station& station = setting.stations[seen.subject.station];
+  std::string out =
+      "x_px,y_px,normal_x,normal_y,offset_px,weight,sigma_px,loop,arc_px,mesh_x_m,mesh_y_m,mesh_z_m,depth_m\n";
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    if (!std::isfinite(fit.offset_px[i]) || !rim.exists()) continue;
+    const RimPoint& point = seen.points[i];
+    const auto place = rim.nearest(point.pixel, point.outward, std::abs(fit.offset_px[i]) + 1e-6);
+    if (!place) continue;
+    const Vec3 world = body.place_m(place->mesh_point);
+    const double depth = (inverse(station.world_from_camera) * world).z;
+    out += format("%.4f,%.4f,%.5f,%.5f,%.5f,%.4f,%.4f,%u,%.2f,%.7g,%.7g,%.7g,%.6g\n", picture[i].pixel.x,
+                  picture[i].pixel.y, picture[i].outward.x, picture[i].outward.y, fit.offset_px[i], fit.weight[i],
+                  fit.sigma_px, point.loop, point.arc_px, place->mesh_point.x, place->mesh_point.y, place->mesh_point.z,
+                  depth);
+  }
+  return out;
+}
+
+}  // namespace gonio::alignment

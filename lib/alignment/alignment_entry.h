@@ -1,0 +1,18 @@
+// What align() found, as the manifest says it. Private to alignment/.
+#pragma once
+#include "alignment/align.h"
+#include "alignment/alignment_input.h"
+#include "manifest/sections/alignment.h"
+
+namespace gonio::alignment {
+
+manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const Aligned& found);
+void enter_figures(const SightingFit& fit, manifest::Outline& outline);
+
+// Moves objects, lamps and cameras of the document to where they were found, with standard deviations.
+void move_document(manifest::Document& document, const AlignmentInput& in, std::size_t body, const Aligned& found);
+
+// The table of a rim's points: align(1), FILES.
+std::string point_table(const AlignmentInput& in, const Setting& setting, std::size_t sighting, const SightingFit& fit);
+
+}  // namespace gonio::alignment

@@ -1,0 +1,53 @@
+// What a manifest says of an alignment, as align() takes it: meshes, cameras, lamps, the ground, and rims from masks.
+#pragma once
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "alignment/fit.h"
+#include "camera/camera_model.h"
+#include "manifest/sections/forward.h"
+
+namespace gonio::alignment {
+
+struct InputWish {
+  std::vector<std::string> objects{};  // to align; empty: all of which outlines show something
+  std::set<std::string> freed{};       // "scale", "size", "camera", "focal", "ground", beside the pose and lamps
+  std::set<std::string> held{};        // "pose", "light"
+  double scale_sigma = 0.05;           // priors, where something is known of what is freed
+  double contact_m = 1e-4;             // 0: nothing is known of where it stands
+  double smooth_px = 1.2;              // of binary masks
+  bool any_start = true;               // the stated poses need not be near: masks have to be whole
+};
+
+// One rim: where it comes from, and its points as the picture has them (Sighting has them straightened).
+struct SeenRim {
+  std::size_t outline = 0;  // place in document.outlines
+  std::string image;
+  double smooth_px = 0;  // by which its mask was smoothed
+  std::vector<RimPoint> in_picture;
+};
+struct AlignmentInput {
+  std::deque<Shape> shapes;
+  Setting stated;
+  Question question;  // sightings in the order of `rims`
+  std::vector<SeenRim> rims;
+  std::vector<std::string> bodies, lamps, cameras;  // names, as the setting numbers them
+  std::vector<std::vector<std::string>> images_of_station;
+  std::vector<camera::CameraModel> models;  // of the lenses
+  std::vector<bool> lamp_stated;
+  std::string ground;  // its object; empty: none
+  // Position in the straightened picture of a pixel of lens `lens`, and back.
+  Vec2 straight(std::size_t lens, Vec2 pixel) const;
+  Vec2 bent(std::size_t lens, Vec2 straight) const;
+};
+
+using NoteFile = std::function<void(const std::filesystem::path&)>;
+// Error(data) at the place for what is missing, empty, cut off or of the wrong size.
+AlignmentInput read_alignment(const manifest::Document& document, const InputWish& wish, const NoteFile& note);
+
+}  // namespace gonio::alignment

@@ -1,0 +1,187 @@
+// See alignment_page.h.
+#include "alignment/alignment_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "alignment/overlay.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "io/picture.h"
+#include "manifest/document.h"
+#include "manifest/image_list.h"
+#include "manifest/sections/alignment.h"
+#include "manifest/sections/image.h"
+#include "report/number_text.h"
+#include "report/page.h"
+#include "stats/intervals.h"
+
+namespace gonio::alignment {
+namespace {
+
+// The photograph as people look at it: its 99th percentile white, sRGB's curve for linear ones. Empty where it has
+// none.
+io::Image shown(const manifest::Document& document, const std::string& id) {
+  const std::size_t i = *manifest::index_of_image(document, id);
+  if (document.images[i].file.empty()) return {};
+  io::Image picture;
+  try {
+    picture = io::read_picture(manifest::picture_path(document, i));
+  } catch (const Error&) {
+    return {};
+  }
+  const bool colour = picture.channel("R") >= 0;
+  io::Image out(picture.width, picture.height,
+                colour ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"});
+  const bool linear = manifest::picture_path(document, i).extension() == ".exr";
+  const auto step = picture.channels.size(), channels = out.channels.size();
+  std::vector<double> values;
+  for (std::size_t p = 0; p < picture.pixels(); p += 7) values.push_back(picture.data[p * step]);
+  const auto white = static_cast<float>(std::max(1e-12, stats::quantile(values, 0.99)));
+  for (std::size_t p = 0; p < picture.pixels(); ++p)
+    for (std::size_t c = 0; c < channels; ++c) {
+      const float v = picture.data[p * step + std::min(c, step - 1)];
+      out.data[p * channels + c] = linear ? io::srgb_from_linear(std::clamp(v / white, 0.0F, 1.0F)) : v;
+    }
+  return out;
+}
+
+std::string with_sigma(double value, double sigma, double unit) {
+  return report::with_sigma(unit * value, unit * sigma);
+}
+
+report::TableText pose_table(const AlignmentInput& in, const std::vector<Aligned>& all) {
+  report::TableText t{.caption = "What was found, with one standard deviation.",
+                      .columns = {{"What", "", false}, {"x"}, {"y"}, {"z"}, {"Unit", "", false}},
+                      .rows = {}};
+  Eigen::Index at = 0;
+  const Fitted& f = all.front().fitted;
+  for (const Freedom& free : in.question.freedoms) {
+    std::vector<std::string> row;
+    const auto sigma = [&](std::size_t k) {
+      const Eigen::Index i = at + static_cast<Eigen::Index>(k);
+      return std::sqrt(std::max(0.0, f.covariance(i, i)));
+    };
+    const auto three = [&](const std::string& name, Vec3 v, double unit, const char* unit_name) {
+      row = {name, with_sigma(v.x, sigma(0), unit), with_sigma(v.y, sigma(1), unit), with_sigma(v.z, sigma(2), unit),
+             unit_name};
+    };
+    if (free.block == Block::body_shift)
+      three("middle of " + in.bodies[free.which], f.setting.bodies[free.which].centre_m(), 1e3, "mm");
+    if (free.block == Block::body_turn)
+      three("turn of " + in.bodies[free.which] + " from its mesh's axes",
+            rotation_vector_of(f.setting.bodies[free.which].world_from_object.rotation), 180 / pi, "degrees");
+    if (free.block == Block::lamp_shift)
+      three("lamp " + in.lamps[free.which], f.setting.lamps_m[free.which], 1e3, "mm");
+    if (free.block == Block::station_shift)
+      three("camera of " + in.images_of_station[free.which].front(),
+            f.setting.stations[free.which].world_from_camera.translation_m, 1e3, "mm");
+    if (free.block == Block::body_scale) {
+      const Vec3 s = f.setting.bodies[free.which].scale - Vec3{1, 1, 1};
+      row = {"growth of " + in.bodies[free.which], with_sigma(s.x, sigma(0), 100),
+             free.uniform ? "" : with_sigma(s.y, sigma(1), 100), free.uniform ? "" : with_sigma(s.z, sigma(2), 100),
+             "%"};
+    }
+    if (!row.empty()) t.rows.push_back(row);
+    at += static_cast<Eigen::Index>(free.size());
+  }
+  return t;
+}
+
+report::TableText rim_table(const manifest::Document& document, const AlignmentInput& in, const Fitted& f) {
+  report::TableText t{
+      .caption =
+          "Rims. Offsets are of the seen points from the model's rim, along its normal; the mean is positive outside.",
+      .columns = {{"Picture", "", false},
+                  {"Rim", "", false},
+                  {"Points"},
+                  {"Left out"},
+                  {"rms", "px"},
+                  {"Mean", "px"},
+                  {"Seen of the model's", "%"}},
+      .rows = {}};
+  for (std::size_t k = 0; k < in.rims.size() && k < f.sightings.size(); ++k) {
+    const SightingFit& s = f.sightings[k];
+    const manifest::Outline& o = document.outlines[in.rims[k].outline];
+    t.rows.push_back({o.image, o.kind + (o.kind == "shadow" ? " of " : " ") + o.object,
+                      std::to_string(s.counted + s.left_out), std::to_string(s.left_out),
+                      report::number_text(s.rms_px, 3), report::number_text(s.mean_px, 2),
+                      report::number_text(100 * s.explained, 3)});
+  }
+  return t;
+}
+
+report::Plot offsets_plot(const AlignmentInput& in, const Fitted& f) {
+  report::Plot plot{.title = "Offsets along the rims",
+                    .caption = "Of what counts; noise has no pattern here, a wrong shape has.",
+                    .x_label = "place along the rims / px",
+                    .y_label = "offset / px"};
+  report::Series object{.kind = report::Series::Kind::points, .name = "objects"},
+      shadow{.kind = report::Series::Kind::points, .name = "shadows"};
+  double start = 0;
+  for (std::size_t k = 0; k < f.sightings.size(); ++k) {
+    const Sighting& seen = in.question.sightings[k];
+    report::Series& to = seen.subject.lamp ? shadow : object;
+    double far = 0;
+    const std::size_t step = 1 + seen.points.size() / 400;
+    for (std::size_t i = 0; i < seen.points.size(); i += step)
+      if (f.sightings[k].weight[i] > 0.1)
+        to.x.push_back(start + static_cast<double>(i)), to.y.push_back(f.sightings[k].offset_px[i]),
+            far = static_cast<double>(i);
+    start += far + 20;
+  }
+  plot.series = {object, shadow};
+  return plot;
+}
+
+std::string headline(const AlignmentInput& in, const std::vector<Aligned>& all) {
+  std::string text;
+  for (std::size_t b = 0; b < all.size(); ++b)
+    text += (b > 0 ? "; " : "") + in.bodies[b] + ": " + word_of(all[b].verdict) +
+            (all[b].why.empty() ? "" : ", " + all[b].why);
+  return text;
+}
+
+}  // namespace
+
+std::string alignment_page(const manifest::Document& document, const AlignmentInput& in,
+                           const std::vector<Aligned>& all) {
+  const Fitted& f = all.front().fitted;
+  const bool good = std::all_of(all.begin(), all.end(), [](const Aligned& a) { return a.verdict == Verdict::found; });
+  report::Page page("align", headline(in, all),
+                    format("%zu rims in %zu pictures, by their normal offsets from the mesh's own rims", in.rims.size(),
+                           in.images_of_station.size()),
+                    good ? report::Tone::good : report::Tone::bad);
+  page.key_numbers({{"rms offset", report::number_text(f.rms_px, 3), "px", "of points that count"},
+                    {"one error is alike over", report::number_text(f.correlation_px, 2), "px", "of rim"},
+                    {"seen of the model's rims", report::number_text(100 * f.explained, 3), "%", ""}});
+  page.section("Pictures");
+  std::vector<report::Figure> figures;
+  std::vector<std::string> images;
+  for (const SeenRim& rim : in.rims)
+    if (std::find(images.begin(), images.end(), rim.image) == images.end()) images.push_back(rim.image);
+  for (std::size_t i = 0; i < std::min<std::size_t>(images.size(), 16); ++i) {
+    std::vector<std::size_t> own;
+    for (std::size_t k = 0; k < in.rims.size() && k < f.sightings.size(); ++k)
+      if (in.rims[k].image == images[i]) own.push_back(k);
+    if (own.empty()) continue;
+    figures.push_back(
+        {.svg = overlay_svg(in, f.setting, own, f.sightings, shown(document, images[i])),
+         .title = images[i],
+         .caption = "The model's rims: object blue, shadow orange; red: seen points that count for nothing."});
+  }
+  page.figures(figures, 520);
+  page.section("Found");
+  page.table(pose_table(in, all));
+  for (const Aligned& a : all) {
+    std::vector<std::string> open = a.open;
+    open.insert(open.end(), a.symmetries.begin(), a.symmetries.end());
+    if (!open.empty()) page.paragraph("No rim holds, or looks alike:"), page.list(open);
+  }
+  page.section("What is left");
+  page.table(rim_table(document, in, f));
+  page.plot(offsets_plot(in, f));
+  return page.html();
+}
+
+}  // namespace gonio::alignment

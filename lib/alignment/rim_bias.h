@@ -1,0 +1,12 @@
+// What finding rims in masks does to rims: pixels and smoothing round corners off and pull bends inwards. The aligned
+// model's own regions go through the same steps, and what happens to their rims there is taken off those that were
+// seen. Private to alignment/.
+#pragma once
+#include "alignment/alignment_input.h"
+
+namespace gonio::alignment {
+
+// The question with the bias under `setting` taken off `in`'s rims as they were seen.
+Question without_bias(const AlignmentInput& in, const Setting& setting);
+
+}  // namespace gonio::alignment
