@@ -159,7 +159,7 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
   if (scaled(freedoms, body, uniform)) {
     manifest::MechanismUse& use = document.mechanisms["geometry.shrinkage"];
     use.on = {in.bodies[body]};
-    const std::array<const char*, 3> names{"x", "y", "z"};
+    const std::array<const char*, 3> names{"shrink_x", "shrink_y", "shrink_z"};
     const Index at = place_of(freedoms, Block::body_scale, body);
     for (std::size_t k = 0; k < 3; ++k) {
       const double s = k == 0 ? b.scale.x : k == 1 ? b.scale.y : b.scale.z;

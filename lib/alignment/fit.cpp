@@ -17,6 +17,22 @@ namespace {
 using Eigen::Index;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+// One mask that serves under several lamps is one observation, not several: of each sighting, one over how many there
+// are of its kind, by points that lie on those of another one of the same rim.
+std::vector<double> shares_of(const Question& question, const std::vector<SeenPoints>& seen) {
+  std::vector<double> repeated(seen.size(), 1);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const auto& points = question.sightings[i].points;
+      if (k == i || points.empty() || !(question.sightings[k].subject == question.sightings[i].subject)) continue;
+      std::size_t same = 0;
+      for (const RimPoint& p : points) same += seen[k].nearest(p.pixel, p.outward, 0.1).has_value();
+      repeated[i] += static_cast<double>(same) / static_cast<double>(points.size());
+    }
+  for (double& r : repeated) r = 1 / r;
+  return repeated;
+}
+
 // A whitened residual and what the loss makes of it.
 struct Loss {
   double width, reach;
@@ -43,8 +59,8 @@ struct Part {
 class Rims final : public optim::Descent {
  public:
   Rims(const Question& question, const Setting& start, const Stage& stage, const std::vector<double>& sigma,
-       const std::vector<SeenPoints>& seen)
-      : q_(question), stage_(stage), sigma_(sigma), seen_(seen), at_(start), next_(start) {
+       const std::vector<SeenPoints>& seen, const std::vector<double>& shares)
+      : q_(question), stage_(stage), sigma_(sigma), seen_(seen), shares_(shares), at_(start), next_(start) {
     count_ = static_cast<Index>(numbers_of(q_.freedoms));
   }
   const Setting& setting() const { return at_; }
@@ -131,7 +147,11 @@ class Rims final : public optim::Descent {
         add(place, point.outward, 1, d / sigma, spacing);
       }
     }
-    if (slopes) p.h.triangularView<Eigen::StrictlyUpper>() = p.h.transpose();
+    p.cost *= shares_[index];
+    if (slopes) {
+      p.h.triangularView<Eigen::StrictlyUpper>() = p.h.transpose();
+      p.h *= shares_[index], p.g *= shares_[index];
+    }
     return p;
   }
 
@@ -170,6 +190,7 @@ class Rims final : public optim::Descent {
   const Stage& stage_;
   const std::vector<double>& sigma_;
   const std::vector<SeenPoints>& seen_;
+  const std::vector<double>& shares_;
   Setting at_, next_;
   Index count_ = 0;
   Eigen::MatrixXd h_;
@@ -256,16 +277,16 @@ namespace {
 struct Descent {
   Setting setting;
   optim::Descended last;
-  std::vector<double> sigma;
+  std::vector<double> sigma, shares;
 };
 Descent go_down(const Setting& start, const Question& question, const std::vector<Stage>& stages,
                 const std::vector<SeenPoints>& seen) {
-  Descent d{start, {}, std::vector<double>(question.sightings.size(), 1.0)};
+  Descent d{start, {}, std::vector<double>(question.sightings.size(), 1.0), shares_of(question, seen)};
   for (const Stage& stage : stages) {
     if (!(stage.width_px > 0))
       for (std::size_t i = 0; i < d.sigma.size(); ++i)
         d.sigma[i] = offsets_of(d.setting, question.sightings[i], seen[i], stage.reach_px).sigma_px;
-    Rims rims(question, d.setting, stage, d.sigma, seen);
+    Rims rims(question, d.setting, stage, d.sigma, seen, d.shares);
     const double cost = rims.cost_at(d.setting);
     if (!std::isfinite(cost))
       throw Error(Exit::data, "start", "has a rim behind a camera or above its lamp", "state other poses");
@@ -302,7 +323,7 @@ Fitted fit_rims(const Setting& start, const Question& question, const std::vecto
     f.sightings[i] = offsets_of(f.setting, question.sightings[i], seen[i], last.reach_px);
     const SightingFit& s = f.sightings[i];
     const auto n = static_cast<double>(s.counted);
-    down.sigma[i] = s.sigma_px;
+    down.sigma[i] = s.sigma_px, f.sightings[i].share = down.shares[i];
     squares += n * s.rms_px * s.rms_px, variance += n * s.sigma_px * s.sigma_px, counted += n;
     explained += n * s.explained, met += n * s.met;
   }
@@ -311,7 +332,7 @@ Fitted fit_rims(const Setting& start, const Question& question, const std::vecto
     f.explained = explained / counted, f.met = met / counted;
   }
   if (!question.freedoms.empty()) {
-    const Rims rims(question, f.setting, last, down.sigma, seen);
+    const Rims rims(question, f.setting, last, down.sigma, seen, down.shares);
     find_covariance(f, question, rims.sum(f.setting, true).h, rims.of_points(f.setting));
   }
   return f;
@@ -320,7 +341,8 @@ Fitted fit_rims(const Setting& start, const Question& question, const std::vecto
 double cost_of(const Setting& setting, const Question& question, const Stage& stage) {
   const std::vector<SeenPoints> seen = seen_points(question);
   const std::vector<double> sigma(question.sightings.size(), 1.0);
-  return Rims(question, setting, stage, sigma, seen).cost_at(setting);
+  const std::vector<double> shares(question.sightings.size(), 1.0);
+  return Rims(question, setting, stage, sigma, seen, shares).cost_at(setting);
 }
 
 }  // namespace gonio::alignment

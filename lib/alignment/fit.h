@@ -61,6 +61,7 @@ struct SightingFit {
   std::vector<double> weight;      // of the loss, 0 to 1
   double sigma_px = 0;             // robust: of one point
   double rms_px = 0, mean_px = 0;  // of the points that count for more than a tenth
+  double share = 1;                // of an observation: several sightings of one mask are one
   std::size_t counted = 0, left_out = 0;
   double explained = 0;  // share of the model's visible rim with points within three sigma and a pixel
   double met = 0;        // share of the points with a rim there

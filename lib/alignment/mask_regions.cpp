@@ -82,7 +82,7 @@ std::vector<RimPoint> MaskRegions::rim(std::size_t outline, double smooth_px, bo
       throw Error(Exit::data, own.place, "touches the picture's " + side + " border: the object is cut off",
                   "take a picture of all of it, or state a pose that is nearly right and give --from stated");
   }
-  Region region{width_, height_, own.share, near_.at(outline), 0.5};
+  Region region{width_, height_, own.share, near_.at(outline), 0.8};
   if (own.shadow)  // what an object hides of its shadow goes on beneath it: its own rim ends there
     for (const Mask& other : masks_)
       if (covers(own, other))

@@ -86,6 +86,7 @@ class Strips {
     double upper = -HUGE_VAL;
     for (const Segment& s : segments)
       for (const Vec2 p : {s.from, s.to}) lower_ = std::min(lower_, level(p)), upper = std::max(upper, level(p));
+    tie_ = 1e-11 * (std::abs(lower_) + std::abs(upper) + 1);
     const double count = std::clamp(static_cast<double>(segments.size()), 1.0, 4096.0);
     size_ = std::max((upper - lower_) / count, 1e-300);
     strips_ = 1 + static_cast<std::size_t>((upper - lower_) / size_);
@@ -97,7 +98,8 @@ class Strips {
     for (std::uint32_t i = 0; i < segments.size(); ++i)
       each(segments[i], [&](std::size_t c) { members_[at[c]++] = i; });
   }
-  // How often the place just before `p` on its line is covered; the segment `own`, on which it lies, does not count.
+  // How often the place just before `p` on its line is covered; the segment `own`, on which it lies, does not count. Of
+  // segments that lie on each other, as far as rounding tells, those with smaller numbers come first.
   int before(Vec2 p, std::uint32_t own) const {
     const double at = level(p), reach = along_ == 0 ? p.x : p.y;
     const std::size_t strip = strip_of(at);
@@ -110,7 +112,7 @@ class Strips {
       const double share = (at - from) / (to - from);
       const double where =
           along_ == 0 ? s.from.x + share * (s.to.x - s.from.x) : s.from.y + share * (s.to.y - s.from.y);
-      if (where < reach) covered += enters(s) ? s.jump : -s.jump;
+      if (std::abs(where - reach) < tie_ ? members_[i] < own : where < reach) covered += enters(s) ? s.jump : -s.jump;
     }
     return covered;
   }
@@ -130,7 +132,7 @@ class Strips {
 
   std::span<const Segment> segments_;
   int along_;
-  double lower_, size_;
+  double lower_, size_, tie_ = 0;
   std::size_t strips_;
   std::vector<std::uint32_t> starts_, members_;
 };

@@ -69,7 +69,7 @@ void add_meat(const Setting& s, const Question& q, std::size_t index, const Sigh
     slopes_of(s, q.freedoms, axes, sighting.subject.station, sighting.subject.body, sighting.subject.lamp,
               place->mesh_point, place->outward, row.data());
     used.push_back(i);
-    slopes.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), count) / fit.sigma_px);
+    slopes.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), count) * (fit.share / fit.sigma_px));
     variance += fit.weight[i] * fit.weight[i] * fit.offset_px[i] * fit.offset_px[i] / (fit.sigma_px * fit.sigma_px);
   }
   if (used.empty()) return;

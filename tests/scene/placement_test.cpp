@@ -67,6 +67,9 @@ TEST(Placement, GrowthOffsetAndContactDoWhatTheySay) {
   const Instance before = standing(tetrahedron());
   const Instance grown = moved(before, of("geometry.scale"), std::vector<double>{0.05});
   EXPECT_NEAR(norm(vertex(grown, 3) - vertex(grown, 0)), 0.3 * 1.05, 1e-12);
+  const Instance shrunk = moved(before, of("geometry.shrinkage"), std::vector<double>{0.1, 0, -0.1});
+  EXPECT_NEAR(vertex(shrunk, 3).z - vertex(shrunk, 0).z, 1.1 * (vertex(before, 3).z - vertex(before, 0).z), 1e-12);
+  EXPECT_NEAR(norm(vertex(shrunk, 1) - vertex(shrunk, 0)), 0.9 * norm(vertex(before, 1) - vertex(before, 0)), 1e-12);
   const Instance thicker = moved(before, of("geometry.offset"), std::vector<double>{0.001});
   EXPECT_NEAR(norm(vertex(thicker, 1) - vertex(before, 1)), 0.001, 1e-12);
   const Instance sunk = moved(before, of("geometry.contact"), std::vector<double>{0.002});

@@ -34,6 +34,8 @@ std::vector<Untouched> image_reasons() {
            "behind it are boards, and render has it"},
           {"surface.micro-ridges",
            "glints between two and ten pixels wide: the model of a mean lobe holds for tables of a sample alone"},
+          {"geometry.shrinkage",
+           "rims tell sizes along each axis (align --free scale); pictures are asked for one growth, geometry.scale"},
           {"surface.residue", "reliefs turn with the sample, which is measured by tables of reflectance"},
           {"surface.walls", "reliefs turn with the sample, which is measured by tables of reflectance"},
           {"surface.thin-film", "three channels average over its fringes: tables of reflectance in narrow bands"},
