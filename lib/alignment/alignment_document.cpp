@@ -28,10 +28,11 @@ void say(const AlignmentInput& in, const std::vector<Aligned>& all) {
 }  // namespace
 
 void check_alignment(const manifest::Document& document, const AlignmentRequest& request) {
-  read_alignment(document, request.input, {});
+  if (request.masks.by == MaskWish::By::given) read_alignment(document, request.input, {});
 }
 
 Verdict align_document(manifest::Document& document, const AlignmentRequest& request) {
+  find_masks(document, request.masks, request.output_path, request.note_input);
   const AlignmentInput in = read_alignment(document, request.input, request.note_input);
   const std::vector<Aligned> all = align_bodies(in, request.wish);
   say(in, all);

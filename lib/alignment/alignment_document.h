@@ -6,11 +6,13 @@
 
 #include "alignment/align.h"
 #include "alignment/alignment_input.h"
+#include "alignment/found_masks.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::alignment {
 
 struct AlignmentRequest {
+  MaskWish masks{};
   InputWish input{};
   AlignWish wish{};
   std::filesystem::path page{};                                                 // report to write; empty: none
@@ -18,7 +20,7 @@ struct AlignmentRequest {
   std::function<void(const std::filesystem::path&)> note_input{};
 };
 
-// Reads what the alignment would: Error(data | usage) where it cannot be done.
+// Reads what the alignment would, where masks are given: Error(data | usage) where it cannot be done.
 void check_alignment(const manifest::Document& document, const AlignmentRequest& request);
 
 // Enters `alignments`, figures of `outlines` with tables of their points, and, of objects that were found: their

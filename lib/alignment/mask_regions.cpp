@@ -40,18 +40,20 @@ MaskRegions::MaskRegions(int width, int height, std::vector<Mask> masks)
   const int reach = static_cast<int>(std::ceil(margin_px));
   for (const Mask& own : masks_) {
     std::vector<std::uint8_t> near(own.share.size(), 0);
+    const auto at = [&](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
+    const auto mark_about = [&](int x, int y) {
+      for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
+        for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u)
+          if ((u - x) * (u - x) + (v - y) * (v - y) <= margin_px * margin_px) near[at(u, v)] = 1;
+    };
     for (const Mask& other : masks_) {
-      if (!covers(own, other)) continue;
+      const bool over = covers(own, other);
       for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-          if (!(other.share[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                            static_cast<std::size_t>(x)] > 0.5F))
-            continue;
-          for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
-            for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u)
-              if ((u - x) * (u - x) + (v - y) * (v - y) <= margin_px * margin_px)
-                near[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)] = 1;
-        }
+        for (int x = 0; x < width; ++x)
+          if ((over && other.share[at(x, y)] > 0.5F) || (!other.unknown.empty() && other.unknown[at(x, y)]))
+            mark_about(x, y);
     }
     near_[own.outline] = std::move(near);
   }
@@ -120,12 +122,16 @@ MaskRegions read_regions(const manifest::Document& document, const std::string& 
                   format("has %d x %d pixels, and the camera %d x %d", picture.width, picture.height, size[0], size[1]),
                   "masks are as large as the photograph");
     width = picture.width, height = picture.height;
-    MaskRegions::Mask mask{i, o.object, place, o.kind == "shadow", std::vector<float>(picture.pixels()), true};
+    MaskRegions::Mask mask{i, o.object, place, o.kind == "shadow", std::vector<float>(picture.pixels()), true, {}};
+    const int unknown = picture.channel("unknown");
+    if (unknown >= 0) mask.unknown.resize(picture.pixels());
     std::size_t between = 0;
     for (std::size_t p = 0; p < picture.pixels(); ++p) {
       const float v = picture.data[p * picture.channels.size()];
       if (!std::isfinite(v)) throw Error(Exit::data, place, "has a pixel that is no number");
       mask.share[p] = std::clamp(v, 0.0F, 1.0F);
+      if (unknown >= 0)
+        mask.unknown[p] = picture.data[p * picture.channels.size() + static_cast<std::size_t>(unknown)] > 0.5F;
       between += v > 0.02F && v < 0.98F;
     }
     const auto inside = std::count_if(mask.share.begin(), mask.share.end(), [](float v) { return v > 0.5F; });

@@ -20,6 +20,7 @@ class MaskRegions {
     bool shadow = false;
     std::vector<float> share;  // of each pixel
     bool binary = true;
+    std::vector<std::uint8_t> unknown{};  // 1 per pixel of which nobody can tell; or empty
   };
   MaskRegions(int width, int height, std::vector<Mask> masks);
 

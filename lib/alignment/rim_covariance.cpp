@@ -60,7 +60,8 @@ void add_meat(const Setting& s, const Question& q, std::size_t index, const Sigh
   std::vector<std::size_t> used;
   std::vector<Eigen::VectorXd> slopes;
   std::vector<double> row(static_cast<std::size_t>(count));
-  double variance = 0;
+  Eigen::VectorXd all_along = Eigen::VectorXd::Zero(count);
+  double variance = 0, offsets = 0, weights = 0;
   for (std::size_t i = 0; i < sighting.points.size(); ++i) {
     if (!(fit.weight[i] > 0)) continue;
     const auto place =
@@ -71,9 +72,16 @@ void add_meat(const Setting& s, const Question& q, std::size_t index, const Sigh
     used.push_back(i);
     slopes.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), count) * (fit.share / fit.sigma_px));
     variance += fit.weight[i] * fit.weight[i] * fit.offset_px[i] * fit.offset_px[i] / (fit.sigma_px * fit.sigma_px);
+    all_along += fit.weight[i] * slopes.back();
+    offsets += fit.weight[i] * fit.offset_px[i] / fit.sigma_px, weights += fit.weight[i];
   }
   if (used.empty()) return;
-  variance *= repeated / static_cast<double>(used.size());
+  const auto points_used = static_cast<double>(used.size());
+  variance /= points_used;
+  // A mask that is too wide all around: what its mean offset has beyond the mean of that many independent errors.
+  const double common = offsets * offsets / (weights * weights) - variance * length_px / points_used;
+  if (common > 0) meat += repeated * common * all_along * all_along.transpose();
+  variance *= repeated;
   const auto& points = sighting.points;
   // An exponential of that length is positive definite whatever the arcs are; the measured autocorrelation need not be.
   const double decay = 2 / std::max(length_px, 1e-3), reach = 6 / decay;
