@@ -25,9 +25,9 @@ double merit(const Fitted& f) {
 }
 
 // Sum of squares, bounded, of points at one standard deviation each, all starts measured alike.
-double squares_of(const Setting& s, const Question& q, double sigma_px) {
+double squares_of(const Setting& s, const RimCost& cost, double sigma_px) {
   const Stage judge{.reach_px = 10 * sigma_px + 2, .width_px = 3 * sigma_px};
-  return cost_of(s, q, judge) / (sigma_px * sigma_px);
+  return cost.of(s, judge) / (sigma_px * sigma_px);
 }
 
 std::vector<std::size_t> lamps_of(const Question& q) {
@@ -56,7 +56,8 @@ Fitted finish(const Setting& start, const Question& q, const AlignWish& wish, bo
 
 void find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>& others, Aligned& a) {
   const Fitted& f = a.fitted;
-  const double sigma = std::max(f.sigma_px, 0.02), best = squares_of(f.setting, q, sigma);
+  const RimCost cost(q);
+  const double sigma = std::max(f.sigma_px, 0.02), best = squares_of(f.setting, cost, sigma);
   const double same = std::max(1.0, f.correlation_px);
   const auto consider = [&](const Setting& setting) -> double {
     const Fitted other =
@@ -67,7 +68,7 @@ void find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>&
         norm(rotation_vector_of(normalized(other.setting.bodies[body].world_from_object.rotation *
                                            conjugate(f.setting.bodies[body].world_from_object.rotation))));
     if (turn < 0.02) return HUGE_VAL;  // the same one
-    const double worse = (squares_of(other.setting, q, sigma) - best) / same;
+    const double worse = (squares_of(other.setting, cost, sigma) - best) / same;
     if (worse < 9) a.rivals.push_back({other.setting, worse, other.rms_px, other.explained});
     return worse;
   };
@@ -87,7 +88,7 @@ void find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>&
       for (const double angle : angles) by += (by.empty() ? "" : ", ") + format("%.0f", angle);
       by += " degrees";
     }
-    a.symmetries.push_back(format("turning about (%.2f, %.2f, %.2f) of the mesh by ", axis.x, axis.y, axis.z) + by);
+    a.symmetries.push_back("turning about " + axis_words(axis) + " of the mesh by " + by);
   }
 }
 

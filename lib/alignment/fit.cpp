@@ -338,11 +338,18 @@ Fitted fit_rims(const Setting& start, const Question& question, const std::vecto
   return f;
 }
 
-double cost_of(const Setting& setting, const Question& question, const Stage& stage) {
-  const std::vector<SeenPoints> seen = seen_points(question);
-  const std::vector<double> sigma(question.sightings.size(), 1.0);
-  const std::vector<double> shares(question.sightings.size(), 1.0);
-  return Rims(question, setting, stage, sigma, seen, shares).cost_at(setting);
+struct RimCost::Known {
+  explicit Known(const Question& q) : question(q), seen(seen_points(q)), ones(q.sightings.size(), 1.0) {}
+  const Question& question;
+  std::vector<SeenPoints> seen;
+  std::vector<double> ones;
+};
+
+RimCost::RimCost(const Question& question) : known_(std::make_unique<const Known>(question)) {}
+RimCost::~RimCost() = default;
+
+double RimCost::of(const Setting& setting, const Stage& stage) const {
+  return Rims(known_->question, setting, stage, known_->ones, known_->seen, known_->ones).cost_at(setting);
 }
 
 }  // namespace gonio::alignment

@@ -18,6 +18,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -81,8 +82,18 @@ struct Fitted {
 Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
 // The same without figures or covariance: where it ends.
 Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
-// Cost of the setting alone, both ways, each point's share bounded: for choosing between starts. Infinite where rims do
-// not exist.
-double cost_of(const Setting& setting, const Question& question, const Stage& stage);
+// Costs of settings alone, each point's share bounded: for choosing between starts. Infinite where rims do not exist.
+// The question has to outlive it.
+class RimCost {
+ public:
+  explicit RimCost(const Question& question);
+  ~RimCost();
+  RimCost(const RimCost&) = delete;
+  double of(const Setting& setting, const Stage& stage) const;
+
+ private:
+  struct Known;
+  std::unique_ptr<const Known> known_;
+};
 
 }  // namespace gonio::alignment

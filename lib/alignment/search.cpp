@@ -181,7 +181,14 @@ Moments moments_of_points(const std::vector<RimPoint>& points, Vec2 origin) {
 
 std::vector<Start> search_body(const Setting& stated, const Question& question, std::size_t body,
                                const SearchWish& wish) {
-  const Question q = only(question, [&](const Sighting& s) { return s.subject.body == body && !s.subject.lamp; });
+  // Photographs from one place show one rim: the first will do.
+  std::vector<RimSubject> known;
+  const Question q = only(question, [&](const Sighting& s) {
+    const bool fresh = std::find(known.begin(), known.end(), s.subject) == known.end();
+    known.push_back(s.subject);
+    return s.subject.body == body && !s.subject.lamp && fresh;
+  });
+  const RimCost cost(q);
   const Sighting* best = nullptr;
   for (const Sighting& s : q.sightings)
     if (!best || s.points.size() > best->points.size()) best = &s;
@@ -231,7 +238,7 @@ std::vector<Start> search_body(const Setting& stated, const Question& question, 
     starts[i].cost = HUGE_VAL;
     if (!settle(poses, seen, rough.radius_m(), a)) return;
     starts[i].setting = poses.at(a.camera_from_mesh, a.aim, a.distance_m);
-    starts[i].cost = cost_of(starts[i].setting, q, compare);
+    starts[i].cost = cost.of(starts[i].setting, compare);
   });
   starts = distinct(std::move(starts), body, wish.move_station);
   starts.resize(std::min(starts.size(), static_cast<std::size_t>(wish.refined)));
@@ -259,7 +266,7 @@ std::vector<Start> search_body(const Setting& stated, const Question& question, 
     rough_question.stated = s.setting;
     s.setting = settle_rims(s.setting, rough_question, stages);
     s.setting.bodies[body].shape = &fine;
-    s.cost = cost_of(s.setting, q, judge);
+    s.cost = cost.of(s.setting, judge);
   }
   return distinct(std::move(starts), body, wish.move_station);
 }
@@ -268,6 +275,7 @@ std::vector<Start> search_lamp(const Setting& setting, const Question& question,
                                const SearchWish& wish) {
   Question q = only(question, [&](const Sighting& s) { return s.subject.lamp == lamp; });
   if (q.sightings.empty()) return {{setting, 0}};
+  const RimCost cost(q);
   const std::size_t body = q.sightings.front().subject.body;
   const Body& b = setting.bodies[body];
   const Shape rough = b.shape->triangles() > 6000 ? b.shape->rough(24) : *b.shape;
@@ -285,7 +293,7 @@ std::vector<Start> search_lamp(const Setting& setting, const Question& question,
   parallel_for(0, places.size(), [&](std::size_t i) {
     starts[i].setting = base;
     starts[i].setting.lamps_m[lamp] = places[i];
-    starts[i].cost = cost_of(starts[i].setting, q, compare);
+    starts[i].cost = cost.of(starts[i].setting, compare);
   });
   std::sort(starts.begin(), starts.end(), [](const Start& x, const Start& y) { return x.cost < y.cost; });
   std::erase_if(starts, [](const Start& s) { return !std::isfinite(s.cost); });
@@ -309,7 +317,7 @@ std::vector<Start> search_lamp(const Setting& setting, const Question& question,
     q.stated = s.setting;
     s.setting = settle_rims(s.setting, q, stages);
     s.setting.bodies[body].shape = b.shape;
-    s.cost = cost_of(s.setting, q, judge);
+    s.cost = cost.of(s.setting, judge);
   }
   std::sort(starts.begin(), starts.end(), [](const Start& x, const Start& y) { return x.cost < y.cost; });
   return starts;

@@ -21,16 +21,17 @@ Setting turned(const Setting& setting, std::size_t body, Vec3 middle, Vec3 axis,
   return out;
 }
 
-std::string words(Vec3 v) {
+}  // namespace
+
+std::string axis_words(Vec3 v) {
   // An axis has no sign: the largest component counts upwards.
   const double sign = std::abs(v.x) > std::abs(v.y) && std::abs(v.x) > std::abs(v.z) ? v.x
                       : std::abs(v.y) > std::abs(v.z)                                ? v.y
                                                                                      : v.z;
   if (sign < 0) v = -v;
-  return format("(%.2f, %.2f, %.2f)", v.x + 0.0, v.y + 0.0, v.z + 0.0);
+  const auto round = [](double x) { return std::round(100 * x) / 100 + 0.0; };  // no -0.00
+  return format("(%.2f, %.2f, %.2f)", round(v.x), round(v.y), round(v.z));
 }
-
-}  // namespace
 
 Axes principal_axes(const Shape& shape) {
   double area = 0;
@@ -76,12 +77,13 @@ std::vector<Turned> turned_alike(const Fitted& fitted, const Question& question,
       all.push_back({turned(base, body, axes.middle_m, axis, degrees * pi / 180), axis, degrees * pi / 180});
   // Far apart, all that is beyond reach costs the same: what looks alike costs about what the found pose does.
   const Stage judge{.reach_px = 12, .width_px = 3, .both_ways = true, .every = 4};
-  const double best = cost_of(base, question, judge);
+  const RimCost judged(question);
+  const double best = judged.of(base, judge);
   double most = 0;
   for (const Sighting& s : question.sightings) most += static_cast<double>(s.points.size());
   most *= 2 * 9 * std::log1p(16.0);
   std::vector<double> cost(all.size());
-  parallel_for(0, all.size(), [&](std::size_t i) { cost[i] = cost_of(all[i].setting, question, judge); });
+  parallel_for(0, all.size(), [&](std::size_t i) { cost[i] = judged.of(all[i].setting, judge); });
   std::vector<Turned> alike;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!(cost[i] < 3 * best + 0.1 * most)) continue;
@@ -139,10 +141,10 @@ std::vector<std::string> open_directions(const Fitted& fitted, const Question& q
     const Mat3 mesh_from_world = transposed(matrix_of(fitted.setting.bodies[body].world_from_object.rotation));
     std::string what;
     const auto add = [&](const std::string& part) { what += (what.empty() ? "" : " with ") + part; };
-    if (turning > 0.2) add("turning about " + words(normalized(mesh_from_world * turn)) + " of the mesh");
-    if (shifting > 0.2) add("moving along " + words(normalized(shift)) + " of the world");
+    if (turning > 0.2) add("turning about " + axis_words(normalized(mesh_from_world * turn)) + " of the mesh");
+    if (shifting > 0.2) add("moving along " + axis_words(normalized(shift)) + " of the world");
     if (sizing > 0.2)
-      add(one_size ? std::string("its size") : "its size along " + words(normalized(size)) + " of the mesh");
+      add(one_size ? std::string("its size") : "its size along " + axis_words(normalized(size)) + " of the mesh");
     open.push_back(what);
   }
   return open;

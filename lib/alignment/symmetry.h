@@ -7,6 +7,9 @@
 
 namespace gonio::alignment {
 
+// "(0.00, 0.71, 0.71)": of an axis, which has no sign.
+std::string axis_words(Vec3 axis);
+
 // Middle and principal axes of the mesh's surface, mesh frame.
 struct Axes {
   Vec3 middle_m;

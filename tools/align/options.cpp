@@ -139,7 +139,7 @@ std::vector<cli::Option> options() {
       {.name = "least-share",
        .type = Type::number,
        .help = "Lost where less of the model's rims was seen than this, or less of what was seen is the model's.",
-       .preset = "0.9",
+       .preset = "0.8",
        .lower = 0.1,
        .upper = 1},
       {.name = "directions",
