@@ -119,7 +119,8 @@ std::string why_lost(const Fitted& f, const AlignWish& wish) {
   if (f.explained < wish.least_share)
     return format("only %.0f %% of the model's rims were seen (limit %.0f %%)", 100 * f.explained,
                   100 * wish.least_share);
-  return format("rims lie %.1f px apart (limit %.1f px)", f.sigma_px, wish.most_sigma_px);
+  return format("points lie %.2f px off the rims (limit %.2f px): another shape, or another size", f.sigma_px,
+                wish.most_sigma_px);
 }
 
 }  // namespace

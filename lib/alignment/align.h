@@ -20,7 +20,7 @@ struct AlignWish {
   double reach_px = 60;      // of the stated start
   // Believed only where so much of the models' rims has points beside it and so many points have a rim, and what is
   // left is no more than this.
-  double least_share = 0.8, most_sigma_px = 1.5;
+  double least_share = 0.8, most_sigma_px = 0.75;
   // A direction is open where it is known no better than to this share of the body's radius.
   double open_share = 0.03;
   SearchWish search{};

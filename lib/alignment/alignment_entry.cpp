@@ -113,7 +113,9 @@ manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const A
   const auto& freedoms = in.question.freedoms;
   manifest::Alignment a;
   a.object = in.bodies[body], a.verdict = word_of(found.verdict), a.why = found.why;
+  a.rms_px = f.rms_px, a.sigma_px = f.sigma_px, a.correlation_px = f.correlation_px, a.explained = f.explained;
   a.world_from_object = pose_of(b), a.centre_m = numbers(b.centre_m());
+  if (found.verdict == Verdict::lost || found.verdict == Verdict::mirrored) return a;  // how sure nobody asks
   a.covariance = joint(f, place_of(freedoms, Block::body_turn, body), place_of(freedoms, Block::body_shift, body));
   bool uniform = false;
   if (scaled(freedoms, body, uniform)) {
@@ -124,7 +126,6 @@ manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const A
                                : std::vector<double>{b.scale.x * sigma_at(f, at), b.scale.y * sigma_at(f, at + 1),
                                                      b.scale.z * sigma_at(f, at + 2)};
   }
-  a.rms_px = f.rms_px, a.sigma_px = f.sigma_px, a.correlation_px = f.correlation_px, a.explained = f.explained;
   a.open = found.open;
   a.open.insert(a.open.end(), found.symmetries.begin(), found.symmetries.end());
   for (const Rival& r : found.rivals) a.candidates.push_back({pose_of(r.setting.bodies[body]), r.rms_px, r.explained});

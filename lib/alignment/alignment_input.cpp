@@ -148,14 +148,16 @@ void add_freedoms(const InputWish& wish, AlignmentInput& in) {
     f.push_back({Block::ground_tilt, 0, 0.05}), f.push_back({Block::ground_shift, 0, 0.01});
 }
 
-// A mesh in millimetres, or a camera in centimetres: no fit says that as plainly.
+// A mesh in millimetres, or a camera in centimetres: no fit says that as plainly. Only of poses that somebody stated.
 void check_sizes(const Document& d, const AlignmentInput& in) {
   for (std::size_t b = 0; b < in.bodies.size(); ++b)
     for (const Station& s : in.stated.stations) {
+      const manifest::Object& object = d.objects[object_index(d, in.bodies[b])];
+      if (!object.world_from_object) continue;
       const double distance = norm(s.world_from_camera.translation_m - in.stated.bodies[b].centre_m());
       const double size = 2 * in.stated.bodies[b].shape->radius_m();
-      if (size < 20 * distance && size > 1e-3 * distance) continue;
-      throw Error(Exit::data, manifest::place(d, "/meshes/" + d.objects[object_index(d, in.bodies[b])].mesh),
+      if (size < 1.2 * distance && size > 1e-3 * distance) continue;
+      throw Error(Exit::data, manifest::place(d, "/meshes/" + object.mesh),
                   format("is %.3g m across, and a camera stands %.3g m away", size, distance),
                   "state both in metres: a mesh in millimetres is a thousand times too large");
     }

@@ -71,6 +71,8 @@ RimPlace ModelRim::place_on(const RimPiece& piece, double share) const {
 }
 
 std::vector<RimPlace> ModelRim::places(double spacing_px) const {
+  constexpr double most = 20000;  // a rim that is longer is no picture's
+  spacing_px = std::max(spacing_px, length_ / most);
   std::vector<RimPlace> out;
   for (const RimPiece& piece : pieces_) {
     const auto count = static_cast<int>(std::lround(norm(piece.to - piece.from) / spacing_px));

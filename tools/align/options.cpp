@@ -133,7 +133,7 @@ std::vector<cli::Option> options() {
       {.name = "limit",
        .type = Type::number,
        .help = "Lost where points lie farther off the rims than this, one standard deviation, px.",
-       .preset = "1.5",
+       .preset = "0.75",
        .lower = 0.05,
        .upper = 50},
       {.name = "least-share",
