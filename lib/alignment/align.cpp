@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "alignment/symmetry.h"
 #include "base/error.h"
@@ -54,11 +55,15 @@ Fitted finish(const Setting& start, const Question& q, const AlignWish& wish, bo
   return fit_rims(setting, q, stages_from(from_px));
 }
 
-void find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>& others, Aligned& a) {
+// Nothing else fits better, or: this does.
+std::optional<Setting> find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>& others, Aligned& a) {
   const Fitted& f = a.fitted;
+  a.rivals.clear(), a.symmetries.clear();
   const RimCost cost(q);
   const double sigma = std::max(f.sigma_px, 0.02), best = squares_of(f.setting, cost, sigma);
   const double same = std::max(1.0, f.correlation_px);
+  std::optional<Setting> better;
+  double least = -4;
   const auto consider = [&](const Setting& setting) -> double {
     const Fitted other =
         fit_rims(setting, q,
@@ -69,6 +74,7 @@ void find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>&
                                            conjugate(f.setting.bodies[body].world_from_object.rotation))));
     if (turn < 0.02) return HUGE_VAL;  // the same one
     const double worse = (squares_of(other.setting, cost, sigma) - best) / same;
+    if (worse < least) least = worse, better = other.setting;
     if (worse < 9) a.rivals.push_back({other.setting, worse, other.rms_px, other.explained});
     return worse;
   };
@@ -90,6 +96,7 @@ void find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>&
     }
     a.symmetries.push_back("turning about " + axis_words(axis) + " of the mesh by " + by);
   }
+  return better;
 }
 
 // The same with the body's mesh reflected: does that explain what the body does not?
@@ -171,7 +178,12 @@ Aligned align(const Setting& stated, const Question& question, std::size_t body,
     return a;
   }
   a.verdict = Verdict::found;
-  find_rivals(question, body, tried, a);
+  // A body that is nearly alike from several sides has many ends, of which the search need not have met the best.
+  for (int round = 0; round < 3; ++round) {
+    const auto next = find_rivals(question, body, tried, a);
+    if (!next) break;
+    a.fitted = fit_rims(*next, question, stages_from(8));
+  }
   a.open = open_directions(a.fitted, question, body, wish.open_share);
   if (!a.rivals.empty()) {
     a.verdict = Verdict::ambiguous;

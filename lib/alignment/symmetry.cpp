@@ -73,7 +73,7 @@ std::vector<Turned> turned_alike(const Fitted& fitted, const Question& question,
   base.bodies[body].shape = &rough;
   std::vector<Turned> all;
   for (const Vec3 axis : axes.axis)
-    for (const double degrees : {180.0, 120.0, 240.0, 90.0, 270.0, 72.0, 60.0, 45.0, 20.0})
+    for (const double degrees : {180.0, 120.0, 240.0, 90.0, 270.0, 72.0, 288.0, 60.0, 300.0, 45.0, 315.0, 20.0, 340.0})
       all.push_back({turned(base, body, axes.middle_m, axis, degrees * pi / 180), axis, degrees * pi / 180});
   // Far apart, all that is beyond reach costs the same: what looks alike costs about what the found pose does.
   const Stage judge{.reach_px = 12, .width_px = 3, .both_ways = true, .every = 4};
