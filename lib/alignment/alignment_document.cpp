@@ -11,7 +11,6 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 
 namespace gonio::alignment {
 namespace {

@@ -6,12 +6,15 @@
 
 #include "base/text.h"
 #include "manifest/document.h"
-#include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
+#include "mechanism/mechanism.h"
+
+namespace gonio::mechanism {
+const Mechanism& geometry_shrinkage();
+}
 
 namespace gonio::alignment {
 namespace {
@@ -158,7 +161,7 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
   }
   bool uniform = false;
   if (scaled(freedoms, body, uniform)) {
-    manifest::MechanismUse& use = document.mechanisms["geometry.shrinkage"];
+    manifest::MechanismUse& use = document.mechanisms[mechanism::geometry_shrinkage().id];
     use.on = {in.bodies[body]};
     const std::array<const char*, 3> names{"shrink_x", "shrink_y", "shrink_z"};
     const Index at = place_of(freedoms, Block::body_scale, body);
@@ -178,13 +181,11 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
   for (std::size_t s = 0; s < in.stated.stations.size(); ++s) {
     const Index turn = place_of(freedoms, Block::station_turn, s), shift = place_of(freedoms, Block::station_shift, s);
     if (turn < 0) continue;
-    for (const std::string& id : in.images_of_station[s]) {
-      auto& image = document.images[*manifest::index_of_image(document, id)];
-      image.world_from_camera.emplace();
-      image.world_from_camera->rotation = f.setting.stations[s].world_from_camera.rotation;
-      image.world_from_camera->translation_m = f.setting.stations[s].world_from_camera.translation_m;
-      image.world_from_camera->sigma = manifest::PoseSigma{sigmas(f, turn), sigmas(f, shift)};
-    }
+    manifest::Pose<frame::World, frame::Camera> pose;
+    pose.rotation = f.setting.stations[s].world_from_camera.rotation;
+    pose.translation_m = f.setting.stations[s].world_from_camera.translation_m;
+    pose.sigma = manifest::PoseSigma{sigmas(f, turn), sigmas(f, shift)};
+    move_images(document, in.images_of_station[s], pose);
   }
   for (std::size_t c = 0; c < in.cameras.size(); ++c) {
     if (place_of(freedoms, Block::lens_focal, c) < 0) continue;

@@ -176,6 +176,12 @@ Vec2 AlignmentInput::bent(std::size_t lens, Vec2 straight) const {
   return pixel ? *pixel : Vec2{-1e6, -1e6};
 }
 
+void move_images(Document& document, const std::vector<std::string>& images,
+                 const manifest::Pose<frame::World, frame::Camera>& pose) {
+  for (const std::string& id : images)
+    document.images[*manifest::index_of_image(document, id)].world_from_camera = pose;
+}
+
 AlignmentInput read_alignment(const Document& document, const InputWish& wish, const NoteFile& note) {
   if (document.outlines.empty())
     throw Error(Exit::data, manifest::place(document, "/outlines"), "are missing",

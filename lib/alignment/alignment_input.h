@@ -10,6 +10,7 @@
 
 #include "alignment/fit.h"
 #include "camera/camera_model.h"
+#include "manifest/pose.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::alignment {
@@ -45,6 +46,10 @@ struct AlignmentInput {
   Vec2 straight(std::size_t lens, Vec2 pixel) const;
   Vec2 bent(std::size_t lens, Vec2 straight) const;
 };
+
+// Their cameras stand there.
+void move_images(manifest::Document& document, const std::vector<std::string>& images,
+                 const manifest::Pose<frame::World, frame::Camera>& pose);
 
 using NoteFile = std::function<void(const std::filesystem::path&)>;
 // Error(data) at the place for what is missing, empty, cut off or of the wrong size.

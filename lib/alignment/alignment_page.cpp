@@ -11,7 +11,6 @@
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/alignment.h"
-#include "manifest/sections/image.h"
 #include "report/number_text.h"
 #include "report/page.h"
 #include "stats/intervals.h"
@@ -23,7 +22,6 @@ namespace {
 // none.
 io::Image shown(const manifest::Document& document, const std::string& id) {
   const std::size_t i = *manifest::index_of_image(document, id);
-  if (document.images[i].file.empty()) return {};
   io::Image picture;
   try {
     picture = io::read_picture(manifest::picture_path(document, i));

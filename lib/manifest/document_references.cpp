@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "manifest/codec.h"
+#include "manifest/document_references_parts.h"
 #include "manifest/fields.h"
 #include "manifest/image_list.h"
-#include "manifest/sections/alignment.h"
 #include "manifest/sections/board.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/cloud.h"
@@ -42,17 +42,6 @@
 
 namespace gonio::manifest {
 namespace {
-
-template <class T>
-void must_exist(const std::map<std::string, T>& section, const std::string& section_name, const std::string& key,
-                const std::string& where) {
-  if (key.empty() || section.contains(key)) return;
-  std::string names;
-  for (const auto& [name, entry] : section) names += (names.empty() ? "" : ", ") + name;
-  throw Error(Exit::data, where, "names \"" + key + "\", which is not in " + section_name,
-              names.empty() ? "that section is empty"
-                            : "there is " + (names.size() > 80 ? names.substr(0, 77) + "..." : names));
-}
 
 template <class T>
 void unique_ids(const std::vector<T>& section, const std::string& place) {
@@ -340,28 +329,6 @@ void check_scans(const Document& d) {
       for (const std::string& cloud : pair.clouds) must_exist(d.clouds, "clouds", cloud, at + "/pairs");
     for (const RegisteredView& view : registration.views) must_exist(d.clouds, "clouds", view.cloud, at + "/views");
   }
-}
-
-void must_be_object(const Document& d, const std::string& id, const std::string& where) {
-  for (const Object& object : d.objects)
-    if (object.id == id) return;
-  throw Error(Exit::data, where, "names \"" + id + "\", which is not in objects");
-}
-
-// Lamps and cameras of an alignment are those that it was made with: they may have gone since.
-void check_alignments(const Document& d) {
-  for (std::size_t i = 0; i < d.outlines.size(); ++i) {
-    const Outline& outline = d.outlines[i];
-    const std::string at = place(d, "/outlines/" + std::to_string(i));
-    if (!index_of_image(d, outline.image))
-      throw Error(Exit::data, at + "/image", "names \"" + outline.image + "\", which is not in images");
-    must_be_object(d, outline.object, at + "/object");
-    must_exist(d.lights, "lights", outline.light, at + "/light");
-    must_exist(d.files, "files", outline.mask, at + "/mask");
-    must_exist(d.files, "files", outline.file, at + "/file");
-  }
-  for (std::size_t i = 0; i < d.alignments.size(); ++i)
-    must_be_object(d, d.alignments[i].object, place(d, "/alignments/" + std::to_string(i) + "/object"));
 }
 
 }  // namespace

@@ -135,8 +135,8 @@ void add_results(List& all) {
   all.push_back(part("registration: views", "Left out where nothing was to be moved.", registered_view_fields()));
   all.push_back(listed("outlines", "Rims of objects and shadows in photographs; masks by users, points by align.",
                        outline_fields()));
-  all.push_back(listed("alignments", "Written by align: where objects, lamps and cameras are, by rims.",
-                       alignment_fields()));
+  all.push_back(
+      listed("alignments", "Written by align: where objects, lamps and cameras are, by rims.", alignment_fields()));
   all.push_back(part("alignments: lights", "Lamps that shadows place.", aligned_light_fields()));
   all.push_back(part("alignments: cameras", "Cameras that moved along.", aligned_camera_fields()));
   all.push_back(part("alignments: candidates", "Poses that fit as well.", alignment_candidate_fields()));

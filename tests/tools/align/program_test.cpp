@@ -15,7 +15,6 @@
 #include "manifest/document.h"
 #include "manifest/sections/alignment.h"
 #include "manifest/sections/file.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
@@ -68,15 +67,21 @@ class AlignProgram : public ::testing::Test {
   // The scene as somebody believes it, 4 degrees and a centimetre off; `change` is replaced by `to`.
   std::string scene(const std::string& change = "", const std::string& to = "") const {
     std::string text =
-        R"({"gonio": 1, "files": {"mesh": {"path": "wedge.ply"}, "o": {"path": "object.exr"}, "s": {"path": "shadow.exr"}},
- "cameras": {"c": {"model": "pinhole", "width_px": 240, "height_px": 200, "fx_px": 420, "fy_px": 420, "cx_px": 119.5, "cy_px": 99.5}},
+        R"({"gonio": 1,
+ "files": {"mesh": {"path": "wedge.ply"}, "o": {"path": "object.exr"}, "s": {"path": "shadow.exr"}},
+ "cameras": {"c": {"model": "pinhole", "width_px": 240, "height_px": 200, "fx_px": 420, "fy_px": 420,
+                   "cx_px": 119.5, "cy_px": 99.5}},
  "meshes": {"wedge": {"file": "mesh"}, "table": {"plane": {"size_m": [2, 2]}}},
  "surfaces": {"clay": {"model": "diffuse", "albedo": [0.5, 0.3, 0.2]}},
  "lights": {"a": {"model": "point", "position_m": [0.27, -0.17, 0.41], "watt_per_sr": [1, 1, 1]}},
- "objects": [{"id": "wedge", "mesh": "wedge", "surface": "clay", "world_from_object": {"rotation": [1, 0, 0, 0], "translation_m": [-0.03, -0.04, 0]}},
+ "objects": [{"id": "wedge", "mesh": "wedge", "surface": "clay",
+   "world_from_object": {"rotation": [1, 0, 0, 0], "translation_m": [-0.03, -0.04, 0]}},
   {"id": "table", "mesh": "table", "surface": "clay"}],
- "images": [{"id": "v", "camera": "c", "light": "a", "world_from_camera": {"matrix": [[1, 0, 0, 0], [0, -0.6427876096865394, 0.766044443118978, -0.5], [0, -0.766044443118978, -0.6427876096865394, 0.42], [0, 0, 0, 1]]}}],
- "outlines": [{"image": "v", "object": "wedge", "kind": "object", "mask": "o"}, {"image": "v", "object": "wedge", "kind": "shadow", "mask": "s"}]})";
+ "images": [{"id": "v", "camera": "c", "light": "a", "world_from_camera": {"matrix": [[1, 0, 0, 0],
+   [0, -0.6427876096865394, 0.766044443118978, -0.5], [0, -0.766044443118978, -0.6427876096865394, 0.42],
+   [0, 0, 0, 1]]}}],
+ "outlines": [{"image": "v", "object": "wedge", "kind": "object", "mask": "o"},
+              {"image": "v", "object": "wedge", "kind": "shadow", "mask": "s"}]})";
     if (change.empty()) return text;
     const auto at = text.find(change);
     EXPECT_NE(at, std::string::npos) << change;
@@ -146,7 +151,9 @@ TEST_F(AlignProgram, ShrinkageIsFoundAndRenderAppliesIt) {
   write_mask("object.exr", {0, 0, {}}), write_mask("shadow.exr", {0, 0, 0}), write_mask("object2.exr", {1, 0, {}});
   std::string text = scene(R"("s": {)", R"("o2": {"path": "object2.exr"}, "s": {)");
   const std::string second =
-      R"(, {"id": "w", "camera": "c", "light": "a", "world_from_camera": {"rotation": [0.29883623873011983, -0.6408563820557886, 0.6408563820557885, -0.2988362387301199], "translation_m": [-0.5, 0, 0.42]}}],
+      R"(, {"id": "w", "camera": "c", "light": "a", "world_from_camera": {
+   "rotation": [0.29883623873011983, -0.6408563820557886, 0.6408563820557885, -0.2988362387301199],
+   "translation_m": [-0.5, 0, 0.42]}}],
  "outlines": [{"image": "w", "object": "wedge", "kind": "object", "mask": "o2"}, )";
   const std::string first = "],\n \"outlines\": [";
   text.replace(text.find(first), first.size(), second);
@@ -201,7 +208,7 @@ TEST_F(AlignProgram, RefusesInOneLine) {
           R"({"id": "table", "mesh": "table", "surface": "clay"})",
           R"({"id": "table", "mesh": "table", "surface": "clay"}, {"id": "wall", "mesh": "table", "surface": "clay"})"),
       65, "second plane");
-  refused(scene(R"({"image": "v", "object": "wedge", "kind": "object", "mask": "o"}, )", ""), 65,
+  refused(scene(R"({"image": "v", "object": "wedge", "kind": "object", "mask": "o"},)", ""), 65,
           "show no rim of \"wedge\" itself");
   refused(scene(R"("width_px": 240)", R"("width_px": 241)"), 65, "240 x 200 pixels, and the camera 241 x 200");
   refused(scene(R"("mesh": "wedge")", R"("mesh": "table")"), 65, "no mesh from a file");
@@ -210,11 +217,11 @@ TEST_F(AlignProgram, RefusesInOneLine) {
   refused(scene(), 64, "leaves nothing to find", {"--hold", "pose", "--hold", "light"});
   refused(scene(), 64, "--out: is missing", {"--masks", "lamps"});
   refused(scene(), 64, "--from", {"--from", "above"});
-  refused(
-      scene(
-          R"("outlines": [{"image": "v", "object": "wedge", "kind": "object", "mask": "o"}, {"image": "v", "object": "wedge", "kind": "shadow", "mask": "s"}])",
-          R"("outlines": [])"),
-      65, "give masks");
+  refused(scene(
+              R"({"image": "v", "object": "wedge", "kind": "object", "mask": "o"},
+              {"image": "v", "object": "wedge", "kind": "shadow", "mask": "s"})",
+              ""),
+          65, "give masks");
   EXPECT_EQ(run({"align"}, folder_.path()).status, 64);
   EXPECT_EQ(run({"align", "-i", "none.json"}, folder_.path()).status, 66);
 }
@@ -258,19 +265,20 @@ TEST(RecordedSoup, OverlapsMoreThanThePeersAndIsFoundFromNothing) {
   for (Vec3& p : mesh.positions_m) p = p * 1e-3;
   io::write_ply(scratch / "soup.ply", {.positions_m = mesh.positions_m, .triangles = mesh.triangles});
   constexpr double cx = 964.957 - 480, cy = 522.586 - 700;
-  write_file(
-      scratch / "soup.json",
-      R"({"gonio": 1, "files": {"m": {"path": "soup.ply"}, "k": {"path": ")" + (root / "seg_crop.png").string() +
-          format(
-              R"("}}, "cameras": {"c": {"width_px": 400, "height_px": 380, "fx_px": 1390.53, "fy_px": 1386.99, "cx_px": %.3f, "cy_px": %.3f}},)",
-              cx, cy) +
-          R"(
+  write_file(scratch / "soup.json",
+             R"({"gonio": 1, "files": {"m": {"path": "soup.ply"}, "k": {"path": ")" + (root / "seg_crop.png").string() +
+                 format(
+                     R"("}}, "cameras": {"c": {"width_px": 400, "height_px": 380, "fx_px": 1390.53, "fy_px": 1386.99,
+  "cx_px": %.3f, "cy_px": %.3f}},)",
+                     cx, cy) +
+                 R"(
  "meshes": {"soup": {"file": "m"}}, "surfaces": {"s": {"model": "diffuse", "albedo": [0.5, 0.5, 0.5]}},
  "objects": [{"id": "soup", "mesh": "soup", "surface": "s", "world_from_object": {"matrix": [
   [-0.7913458966114294, 0.07584660081839613, 0.6066456668109877, -0.16116877980209404],
   [0.46529349746608056, 0.7183778584745024, 0.5171413865369608, 0.20622094040904116],
   [-0.39657739866517305, 0.6915059982370961, -0.6037763006860087, 0.747151333695172], [0, 0, 0, 1]]}}],
- "images": [{"id": "v", "camera": "c"}], "outlines": [{"image": "v", "object": "soup", "kind": "object", "mask": "k"}]})");
+ "images": [{"id": "v", "camera": "c"}], 
+ "outlines": [{"image": "v", "object": "soup", "kind": "object", "mask": "k"}]})");
   const io::Image mask = io::read_picture(root / "seg_crop.png");
   const alignment::Shape shape(mesh.positions_m, mesh.triangles);
   for (const char* from : {"stated", "nothing"}) {
