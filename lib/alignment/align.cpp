@@ -12,15 +12,10 @@
 namespace gonio::alignment {
 namespace {
 
-struct Attempt {
-  Fitted fitted;
-  Setting start;
-};
-
 bool believed(const Fitted& f, const AlignWish& wish) {
   return f.explained >= wish.least_share && f.met >= wish.least_share && f.sigma_px <= wish.most_sigma_px;
 }
-// For choosing: what is believed comes first, then what accounts for most.
+// For choosing: what accounts for most.
 double merit(const Fitted& f) {
   return f.explained * f.met / (0.5 + f.sigma_px);
 }

@@ -138,9 +138,13 @@ void add_freedoms(const InputWish& wish, AlignmentInput& in) {
   }
   if (!wish.held.contains("light"))
     for (std::size_t l = 0; l < in.lamps.size(); ++l) f.push_back({Block::lamp_shift, l});
-  // The first camera stays where several are known to each other: it carries the world.
+  // Where the object moves as well, the first camera carries the world: both together would be moved by nothing seen.
+  const std::size_t first = wish.held.contains("pose") ? 0 : 1;
+  if (wish.freed.contains("camera") && in.stated.stations.size() <= first)
+    throw Error(Exit::usage, "--free camera", "has one place of one camera, and the object moves as well",
+                "--hold pose: the object stays as it is stated, and the camera is found");
   if (wish.freed.contains("camera"))
-    for (std::size_t s = 0; s < in.stated.stations.size(); ++s)
+    for (std::size_t s = first; s < in.stated.stations.size(); ++s)
       f.push_back({Block::station_turn, s}), f.push_back({Block::station_shift, s});
   if (wish.freed.contains("focal"))
     for (std::size_t l = 0; l < in.cameras.size(); ++l) f.push_back({Block::lens_focal, l, 0.05});

@@ -168,6 +168,23 @@ TEST_F(AlignProgram, ShrinkageIsFoundAndRenderAppliesIt) {
   EXPECT_EQ(run({"render", "found.json", "--spp", "1", "--out", "r"}, folder_.path()).status, 0);
 }
 
+TEST_F(AlignProgram, OfOnePictureTheCameraIsFoundWhereTheObjectStaysAsStated) {
+  std::string text = scene(R"("rotation": [1, 0, 0, 0], "translation_m": [-0.03, -0.04, 0])",
+                           R"("rotation": [0.9689124217106447, 0, 0, 0.24740395925452294],
+   "translation_m": [-0.03, -0.04, 0])");
+  const auto at = text.find("-0.5], [0, -0.76");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, 4, "-0.48");
+  for (const char* from : {"stated", "nothing"}) {
+    const Ended ended = align(text, {"--free", "camera", "--hold", "pose", "--from", from});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    const manifest::Document d = document_of(ended);
+    const auto& camera = *d.alignments.at(0).cameras.at(0).world_from_camera;
+    EXPECT_LT(norm(camera.translation_m - truth_.stations[0].world_from_camera.translation_m), 2e-3) << from;
+  }
+  refused(text, 64, "--hold pose", {"--free", "camera"});
+}
+
 TEST_F(AlignProgram, AMirroredMeshAndAStrangeOneAreNamed) {
   io::TriangleMesh mesh = wedge();
   for (Vec3& p : mesh.positions_m) p.x = -p.x;
