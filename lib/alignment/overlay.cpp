@@ -6,26 +6,9 @@
 
 #include "base/text.h"
 #include "io/picture.h"
-#include "report/plot.h"
+#include "report/page.h"
 
 namespace gonio::alignment {
-namespace {
-
-std::string base64(const std::string& bytes) {
-  static constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) {
-      return i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U;
-    };
-    const unsigned bits = byte(0) << 16U | byte(1) << 8U | byte(2);
-    for (unsigned k = 0; k < 4; ++k) out += i + k <= bytes.size() ? letters[bits >> (18U - 6U * k) & 63U] : '=';
-  }
-  return out;
-}
-
-}  // namespace
-
 std::string overlay_svg(const AlignmentInput& in, const Setting& setting, const std::vector<std::size_t>& sightings,
                         const std::vector<SightingFit>& fits, const io::Image& picture) {
   const camera::CameraModel& model =
@@ -38,7 +21,7 @@ std::string overlay_svg(const AlignmentInput& in, const Setting& setting, const 
                "<image x=\"-0.5\" y=\"-0.5\" width=\"%d\" height=\"%d\" style=\"image-rendering:pixelated\" "
                "href=\"data:image/png;base64,",
                width, height) +
-           base64(io::encode_png(picture)) + "\"/>";
+           report::base64(io::encode_png(picture)) + "\"/>";
   const double line = std::max(0.6, width / 500.0);
   for (const std::size_t k : sightings) {
     const Sighting& seen = in.question.sightings[k];
