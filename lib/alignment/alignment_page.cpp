@@ -147,7 +147,7 @@ std::string alignment_page(const manifest::Document& document, const AlignmentIn
   const Fitted& f = all.front().fitted;
   const bool good = std::all_of(all.begin(), all.end(), [](const Aligned& a) { return a.verdict == Verdict::found; });
   report::Page page("align", headline(in, all),
-                    format("%zu rims in %zu pictures, by their normal offsets from the mesh's own rims", in.rims.size(),
+                    format("%zu rims from %zu places, by their normal offsets from the mesh's own rims", in.rims.size(),
                            in.images_of_station.size()),
                     good ? report::Tone::good : report::Tone::bad);
   page.key_numbers({{"rms offset", report::number_text(f.rms_px, 3), "px", "of points that count"},

@@ -234,7 +234,7 @@ SightingFit offsets_of(const Setting& s, const Sighting& sighting, const SeenPoi
     if (std::isfinite(d)) fit.weight[i] = loss.weight(d / fit.sigma_px), met += std::abs(d) < near;
     if (fit.weight[i] > 0.1)
       squares += d * d, sum += d, ++fit.counted;
-    else
+    else if (sighting.points[i].counts)
       ++fit.left_out;
   }
   if (fit.counted > 0) {
