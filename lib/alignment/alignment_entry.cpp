@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "manifest/document.h"
+#include "manifest/pose_sigma.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
@@ -56,23 +57,6 @@ manifest::Pose<frame::World, frame::Object> pose_of(const Body& body) {
   manifest::Pose<frame::World, frame::Object> pose;
   pose.rotation = body.world_from_object.rotation, pose.translation_m = body.world_from_object.translation_m;
   return pose;
-}
-
-// Of the body's own frame: its centre's shift and what the turn about that adds at the frame's origin.
-manifest::PoseSigma sigma_of_origin(const Fitted& f, Index turn, Index shift, Vec3 arm) {
-  manifest::PoseSigma sigma{sigmas(f, turn), {}};
-  const std::vector<double> c = joint(f, turn, shift);
-  const std::array<std::array<double, 3>, 3> of_turn{{{0, arm.z, -arm.y}, {-arm.z, 0, arm.x}, {arm.y, -arm.x, 0}}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    std::array<double, 6> row{};
-    for (std::size_t j = 0; j < 3; ++j) row[j] = of_turn[k][j];
-    row[3 + k] = 1;
-    double variance = 0;
-    for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t j = 0; j < 6; ++j) variance += row[i] * c[6 * i + j] * row[j];
-    sigma.translation_m.push_back(std::sqrt(std::max(0.0, variance)));
-  }
-  return sigma;
 }
 
 bool scaled(const std::vector<Freedom>& freedoms, std::size_t body, bool& uniform) {
@@ -155,9 +139,11 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
     if (object.id != in.bodies[body]) continue;
     object.world_from_object = pose_of(b);
     const Index turn = place_of(freedoms, Block::body_turn, body), shift = place_of(freedoms, Block::body_shift, body);
-    if (turn >= 0)
+    if (turn >= 0) {
+      const std::vector<double> of_motion = joint(f, turn, shift);
       object.world_from_object->sigma =
-          sigma_of_origin(f, turn, shift, b.world_from_object.translation_m - b.centre_m());
+          manifest::sigma_at(std::span<const double, 36>(of_motion), b.world_from_object.translation_m - b.centre_m());
+    }
   }
   bool uniform = false;
   if (scaled(freedoms, body, uniform)) {

@@ -64,7 +64,6 @@ class Rims final : public optim::Descent {
     count_ = static_cast<Index>(numbers_of(q_.freedoms));
   }
   const Setting& setting() const { return at_; }
-  const Eigen::MatrixXd& information() const { return h_; }
   double cost_at(const Setting& s) const { return sum(s, false).cost; }
 
   void linearise() override {

@@ -75,7 +75,6 @@ struct Fitted {
   double rms_px = 0, sigma_px = 0, correlation_px = 0, explained = 0, met = 0;
   // Of the numbers of the freedoms, with correlated errors; of what nothing holds, huge: see `open`.
   Eigen::MatrixXd covariance;
-  Eigen::MatrixXd information;  // H, of independent errors, priors included
 };
 
 // Error(data) where a rim of the start does not exist (behind a camera, above a lamp).

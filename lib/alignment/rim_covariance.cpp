@@ -135,7 +135,6 @@ std::vector<double> repetition(const Question& q, const Fitted& f) {
 
 void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eigen::MatrixXd& by_points) {
   const auto count = static_cast<Index>(numbers_of(q.freedoms));
-  f.information = h;
   Eigen::MatrixXd of_points = Eigen::MatrixXd::Zero(count, count);
   double correlation = 0, weight = 0;
   const std::vector<double> repeated = repetition(q, f);

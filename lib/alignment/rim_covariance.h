@@ -6,7 +6,7 @@
 
 namespace gonio::alignment {
 
-// Fills information, covariance and correlation_px of `f`, whose setting and sightings stand. `h`: J'WJ of all terms,
+// Fills covariance and correlation_px of `f`, whose setting and sightings stand. `h`: J'WJ of all terms,
 // and `by_points` that of the points alone.
 void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eigen::MatrixXd& by_points);
 

@@ -140,6 +140,28 @@ Question only(const Question& question, const std::function<bool(const Sighting&
   return q;
 }
 
+// Starts let down towards where they lead, by the rough shape, and judged by it; `fine` takes its place then.
+void let_down(std::vector<Start>& starts, Question question, const RimCost& cost, const SearchWish& wish,
+              std::size_t body, const Shape* fine) {
+  const auto stage = [&](double reach_share, double width_share, int every, int most_steps) {
+    return Stage{.reach_px = wish.reach_px * reach_share,
+                 .width_px = wish.reach_px / width_share,
+                 .both_ways = true,
+                 .every = every,
+                 .most_steps = most_steps,
+                 .small_fall = 1e-3};
+  };
+  const std::vector<Stage> stages{stage(1, 4, 4, 15), stage(0.5, 12, 3, 10)};
+  const Stage judge{.reach_px = wish.reach_px / 4, .width_px = 2, .both_ways = true, .every = 2};
+  question.contacts.clear();
+  for (Start& s : starts) {
+    question.stated = s.setting;
+    s.setting = settle_rims(s.setting, question, stages);
+    s.setting.bodies[body].shape = fine;
+    s.cost = cost.of(s.setting, judge);
+  }
+}
+
 }  // namespace
 
 Moments about_middle(const Moments& m) {
@@ -248,26 +270,7 @@ std::vector<Start> search_body(const Setting& stated, const Question& question, 
                                 ? std::vector<Freedom>{{Block::station_turn, best->subject.station},
                                                        {Block::station_shift, best->subject.station}}
                                 : std::vector<Freedom>{{Block::body_turn, body}, {Block::body_shift, body}};
-  rough_question.contacts.clear();
-  const std::vector<Stage> stages{{.reach_px = wish.reach_px,
-                                   .width_px = wish.reach_px / 4,
-                                   .both_ways = true,
-                                   .every = 4,
-                                   .most_steps = 12,
-                                   .small_fall = 1e-3},
-                                  {.reach_px = wish.reach_px / 2,
-                                   .width_px = wish.reach_px / 12,
-                                   .both_ways = true,
-                                   .every = 3,
-                                   .most_steps = 10,
-                                   .small_fall = 1e-3}};
-  const Stage judge{.reach_px = wish.reach_px / 4, .width_px = 2, .both_ways = true, .every = 2};
-  for (Start& s : starts) {
-    rough_question.stated = s.setting;
-    s.setting = settle_rims(s.setting, rough_question, stages);
-    s.setting.bodies[body].shape = &fine;
-    s.cost = cost.of(s.setting, judge);
-  }
+  let_down(starts, rough_question, cost, wish, body, &fine);
   return distinct(std::move(starts), body, wish.move_station);
 }
 
@@ -299,26 +302,7 @@ std::vector<Start> search_lamp(const Setting& setting, const Question& question,
   std::erase_if(starts, [](const Start& s) { return !std::isfinite(s.cost); });
   starts.resize(std::min<std::size_t>(starts.size(), 5));
   q.freedoms = {{Block::lamp_shift, lamp}};
-  q.contacts.clear();
-  const std::vector<Stage> stages{{.reach_px = wish.reach_px,
-                                   .width_px = wish.reach_px / 4,
-                                   .both_ways = true,
-                                   .every = 4,
-                                   .most_steps = 15,
-                                   .small_fall = 1e-3},
-                                  {.reach_px = wish.reach_px / 2,
-                                   .width_px = wish.reach_px / 12,
-                                   .both_ways = true,
-                                   .every = 3,
-                                   .most_steps = 10,
-                                   .small_fall = 1e-3}};
-  const Stage judge{.reach_px = wish.reach_px / 4, .width_px = 2, .both_ways = true, .every = 2};
-  for (Start& s : starts) {
-    q.stated = s.setting;
-    s.setting = settle_rims(s.setting, q, stages);
-    s.setting.bodies[body].shape = b.shape;
-    s.cost = cost.of(s.setting, judge);
-  }
+  let_down(starts, q, cost, wish, body, b.shape);
   std::sort(starts.begin(), starts.end(), [](const Start& x, const Start& y) { return x.cost < y.cost; });
   return starts;
 }

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "manifest/document.h"
 #include "manifest/frame_graph.h"
+#include "manifest/pose_sigma.h"
 #include "manifest/sections/cloud.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/registration.h"
@@ -109,24 +110,6 @@ manifest::Registration entry_of(const Registration& found, const CloudRegisterRe
   return entry;
 }
 
-// Of the camera's place: the shift of the view's centre, and what the turn about that adds.
-manifest::PoseSigma sigma_of(const ViewShift& shift, Vec3 camera_m) {
-  const std::array<double, 36>& c = shift.covariance;
-  const Vec3 arm = camera_m - shift.centre_m;
-  const std::array<std::array<double, 3>, 3> of_turn{{{0, arm.z, -arm.y}, {-arm.z, 0, arm.x}, {arm.y, -arm.x, 0}}};
-  manifest::PoseSigma sigma{sigmas(c, 0), {}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    std::array<double, 6> row{};
-    for (std::size_t j = 0; j < 3; ++j) row[j] = of_turn[k][j];
-    row[3 + k] = 1;
-    double variance = 0;
-    for (std::size_t i = 0; i < 6; ++i)
-      for (std::size_t j = 0; j < 6; ++j) variance += row[i] * c[6 * i + j] * row[j];
-    sigma.translation_m.push_back(std::sqrt(std::max(0.0, variance)));
-  }
-  return sigma;
-}
-
 void move(Document& document, const CloudRegisterRequest& request, const std::string& name, const ViewShift& shift) {
   const auto path = request.output_path(file_stem(name) + ".ply");
   write_moved_cloud(cloud_path(document, name), shift.motion, path);
@@ -137,7 +120,7 @@ void move(Document& document, const CloudRegisterRequest& request, const std::st
     const Rigid<frame::World, frame::Camera> moved = shift.motion * *pose;
     pose->rotation = moved.rotation, pose->translation_m = moved.translation_m;
     // What nothing holds is as badly known as it was.
-    if (shift.open.empty()) pose->sigma = sigma_of(shift, moved.translation_m);
+    if (shift.open.empty()) pose->sigma = manifest::sigma_at(shift.covariance, moved.translation_m - shift.centre_m);
   }
 }
 
