@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "alignment/lamp_size.h"
 #include "alignment/rim_bias.h"
 
 namespace gonio::alignment {
@@ -20,10 +21,16 @@ bool own_block(Block block) {
   return block == Block::body_turn || block == Block::body_shift || block == Block::body_scale;
 }
 
-// Once more without what pixels and smoothing do to rims, which is known where these nearly are.
+std::vector<double> told_radii(const std::vector<LampSize>& sizes) {
+  std::vector<double> radii;
+  for (const LampSize& size : sizes) radii.push_back(size.told() ? size.radius_m : 0);
+  return radii;
+}
+
+// Once more without what pixels, smoothing and the lamps' sizes do to rims, which is known where these nearly are.
 void refine(const AlignmentInput& in, const std::vector<Freedom>& freedoms, Fitted& fitted) {
   for (int round = 0; round < 2; ++round) {
-    Question q = without_bias(in, fitted.setting);
+    Question q = without_bias(in, fitted.setting, told_radii(lamp_sizes(in, fitted.setting)));
     q.freedoms = freedoms;
     fitted = fit_rims(fitted.setting, q, {{.reach_px = 5, .width_px = 0, .most_steps = 15, .small_fall = 1e-7}});
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alignment/lamp_size.h"
 #include "base/text.h"
 #include "manifest/document.h"
 #include "manifest/pose_sigma.h"
@@ -65,12 +66,13 @@ bool scaled(const std::vector<Freedom>& freedoms, std::size_t body, bool& unifor
   return false;
 }
 
-manifest::AlignedLight light_entry(const AlignmentInput& in, std::size_t lamp, const Fitted& f) {
+manifest::AlignedLight light_entry(const AlignmentInput& in, std::size_t lamp, const Fitted& f, const LampSize& size) {
   manifest::AlignedLight light;
   light.light = in.lamps[lamp], light.position_m = numbers(f.setting.lamps_m[lamp]);
   const Index at = place_of(in.question.freedoms, Block::lamp_shift, lamp);
   for (Index i = 0; at >= 0 && i < 3; ++i)
     for (Index k = 0; k < 3; ++k) light.covariance_m2.push_back(f.covariance(at + i, at + k));
+  if (size.edges > 0) light.radius_m = size.radius_m, light.sigma["radius_m"] = {size.sigma_m};
   return light;
 }
 
@@ -116,8 +118,10 @@ manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const A
   a.open = found.open;
   a.open.insert(a.open.end(), found.symmetries.begin(), found.symmetries.end());
   for (const Rival& r : found.rivals) a.candidates.push_back({pose_of(r.setting.bodies[body]), r.rms_px, r.explained});
+  const std::vector<LampSize> sizes = lamp_sizes(in, f.setting);
   for (std::size_t l = 0; l < in.lamps.size(); ++l)
-    if (place_of(freedoms, Block::lamp_shift, l) >= 0) a.lights.push_back(light_entry(in, l, f));
+    if (place_of(freedoms, Block::lamp_shift, l) >= 0 || sizes[l].told())
+      a.lights.push_back(light_entry(in, l, f, sizes[l]));
   for (std::size_t s = 0; s < in.stated.stations.size(); ++s)
     if (place_of(freedoms, Block::station_turn, s) >= 0 ||
         place_of(freedoms, Block::lens_focal, in.stated.stations[s].lens) >= 0)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "alignment/edge_spread.h"
 #include "alignment/mask_regions.h"
 #include "base/error.h"
 #include "base/text.h"
@@ -17,6 +18,7 @@
 #include "manifest/sections/light.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
+#include "photograph/linear_picture.h"
 #include "scene/deformed.h"
 
 namespace gonio::alignment {
@@ -186,6 +188,21 @@ void move_images(Document& document, const std::vector<std::string>& images,
     document.images[*manifest::index_of_image(document, id)].world_from_camera = pose;
 }
 
+namespace {
+
+// Of images whose light is told: an 8-bit picture without a response is good enough to have been masked.
+std::optional<Luminance> luminance_of(const Document& d, std::size_t image, const NoteFile& note) {
+  const manifest::ImageEntry& entry = d.images[image];
+  if (entry.file.empty()) return {};
+  const auto path = manifest::picture_path(d, image);
+  if (entry.response.is_null() && path.extension() != ".exr") return {};
+  if (!std::filesystem::exists(path)) return {};
+  if (note) note(path);
+  return Luminance(photograph::read_linear(path, entry.response, at(d, "images", image), entry.saturation).colour);
+}
+
+}  // namespace
+
 AlignmentInput read_alignment(const Document& document, const InputWish& wish, const NoteFile& note) {
   if (document.outlines.empty())
     throw Error(Exit::data, manifest::place(document, "/outlines"), "are missing",
@@ -223,6 +240,9 @@ AlignmentInput read_alignment(const Document& document, const InputWish& wish, c
       const auto p = model.project({(straight.x - l.cx_px) / l.fx_px, (straight.y - l.cy_px) / l.fy_px, 1});
       return !p || known->hides(i, *p);
     };
+    if (shadow && wish.penumbrae)
+      if (const auto picture = luminance_of(document, image, note))
+        rim.spread_px = edge_spreads(*picture, rim.in_picture, [&](Vec2 pixel) { return known->hides(i, pixel); });
     in.question.sightings.push_back(std::move(sighting)), in.rims.push_back(std::move(rim));
   }
   for (std::size_t b = 0; b < in.bodies.size(); ++b) {

@@ -22,6 +22,7 @@ struct InputWish {
   double scale_sigma = 0.05;           // priors, where something is known of what is freed
   double contact_m = 1e-4;             // 0: nothing is known of where it stands
   double smooth_px = 1.2;              // of binary masks
+  bool penumbrae = true;               // measure shadows' edges in the photographs
   bool any_start = true;               // the stated poses need not be near: masks have to be whole
 };
 
@@ -31,6 +32,7 @@ struct SeenRim {
   std::string image;
   double smooth_px = 0;  // by which its mask was smoothed
   std::vector<RimPoint> in_picture;
+  std::vector<double> spread_px{};  // of a shadow's points, where the photograph is there (edge_spread.h); else empty
 };
 struct AlignmentInput {
   std::deque<Shape> shapes;

@@ -5,33 +5,23 @@
 #include <cmath>
 #include <map>
 
-#include "alignment/coverage.h"
+#include "alignment/model_region.h"
 #include "alignment/seen_points.h"
 #include "base/parallel.h"
 
 namespace gonio::alignment {
-namespace {
-
-std::vector<float> region_of(const AlignmentInput& in, const Setting& setting, const RimSubject& subject) {
-  const std::size_t lens = setting.stations[subject.station].lens;
-  const ModelRim rim(setting, subject);
-  std::vector<Side> sides;
-  for (const RimPiece& p : rim.pieces()) sides.push_back({in.bent(lens, p.from), in.bent(lens, p.to)});
-  return coverage_of(sides, in.models[lens].width_px(), in.models[lens].height_px());
-}
-
-}  // namespace
-
-Question without_bias(const AlignmentInput& in, const Setting& setting) {
+Question without_bias(const AlignmentInput& in, const Setting& setting, const std::vector<double>& radii_m) {
   Question question = in.question;
   parallel_for(0, in.rims.size(), [&](std::size_t k) {
     Sighting& sighting = question.sightings[k];
     const RimSubject& subject = sighting.subject;
     const std::size_t lens = setting.stations[subject.station].lens;
-    Region region{in.models[lens].width_px(), in.models[lens].height_px(), region_of(in, setting, subject), {}, 0};
+    const double radius = subject.lamp && *subject.lamp < radii_m.size() ? radii_m[*subject.lamp] : 0;
+    Region region{
+        in.models[lens].width_px(), in.models[lens].height_px(), model_region(in, setting, subject, radius), {}, 0};
     if (subject.lamp)  // beneath the objects nobody sees it
       for (std::size_t b = 0; b < setting.bodies.size(); ++b) {
-        const std::vector<float> over = region_of(in, setting, {subject.station, b, {}});
+        const std::vector<float> over = model_region(in, setting, {subject.station, b, {}});
         for (std::size_t i = 0; i < over.size(); ++i) region.share[i] = std::min(region.share[i], 1 - over[i]);
       }
     std::vector<RimPoint> made = rim_points(region, in.rims[k].smooth_px, 12);

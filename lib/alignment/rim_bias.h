@@ -6,7 +6,9 @@
 
 namespace gonio::alignment {
 
-// The question with the bias under `setting` taken off `in`'s rims as they were seen.
-Question without_bias(const AlignmentInput& in, const Setting& setting);
+// The question with the bias under `setting` taken off `in`'s rims as they were seen. `radii_m`: of the lamps; one that
+// is larger than a point throws a shadow that is the mean of those of all its places, and its rim is where half of it
+// is gone. Empty: all are points.
+Question without_bias(const AlignmentInput& in, const Setting& setting, const std::vector<double>& radii_m = {});
 
 }  // namespace gonio::alignment

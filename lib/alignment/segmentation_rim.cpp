@@ -11,6 +11,8 @@ namespace {
 constexpr double fall = 0.5;       // px^2, of the weights of those with their distance
 constexpr double most_misfit = 2;  // of a mixture: chi squared over degrees of freedom
 constexpr int reach = 3;           // pixels, of what a rim's pixel is compared with
+constexpr int widest_reach = 24;   // where the shadow of a large lamp goes on growing darker
+constexpr double still_falls = 0.1;
 
 // 1 per pixel that has a neighbour with the other label.
 std::vector<std::uint8_t> rim_of(const Field& field, std::span<const std::uint8_t> object) {
@@ -77,9 +79,33 @@ double share_of(const Field& field, std::size_t p, const Sides& sides) {
   return misfit < most_misfit * static_cast<double>(field.pictures.size()) * field.channels ? share : -1;
 }
 
+// The level of the shadow nearby: of the darkest wholly ground pixel. `wide`: it lies farther off than an edge is wide
+// that a point throws, so that this is a penumbra, of which each pixel's brightness says the share of the lamp.
+struct Darkest {
+  double level = 1;
+  bool wide = false;
+};
+Darkest darkest_near(const Field& field, std::size_t p, std::span<const float> object, std::span<const float> ratio) {
+  const auto within = [&](int pixels) {
+    double least = 1;
+    around(field, p, pixels, [&](std::size_t q) {
+      if (object[q] <= 0.02f) least = std::min(least, static_cast<double>(ratio[q]));
+    });
+    return std::max(0.0, least);
+  };
+  Darkest found{within(reach)};
+  for (int far = 2 * reach; far <= widest_reach; far *= 2) {
+    const double level = within(far);
+    if (level > found.level - still_falls) break;
+    found = {level, true};
+  }
+  return found;
+}
+
 // Shares of the shadow in pixels between it and lit ground, by the brightness of what lies two and three pixels to
 // either side; 0 or 1 elsewhere. `own`: the ratio of each pixel's ground.
-void add_shadow_shares(const Field& field, const std::vector<float>& own, Segmentation& result) {
+void add_shadow_shares(const Field& field, const std::vector<float>& own, const std::vector<float>& penumbra,
+                       Segmentation& result) {
   result.shadow_share.assign(field.pixels(), 0);
   std::vector<std::uint8_t> rim(field.pixels());
   for (std::size_t p = 0; p < field.pixels(); ++p) {
@@ -90,7 +116,8 @@ void add_shadow_shares(const Field& field, const std::vector<float>& own, Segmen
     around(field, p, 1, [&](std::size_t q) { rim[p] = rim[p] || result.labels[q] == other; });
   }
   for (std::size_t p = 0; p < field.pixels(); ++p) {
-    if (!rim[p]) continue;
+    if (penumbra[p] >= 0) result.shadow_share[p] = penumbra[p];
+    if (!rim[p] || penumbra[p] >= 0) continue;
     double dark = 0, darks = 0, lit = 0, lits = 0;
     around(field, p, reach, [&](std::size_t q) {
       if (rim[q] || result.object_share[q] > 0.02f) return;
@@ -158,6 +185,7 @@ Segmentation labels_of(const Field& field, std::size_t k, std::span<const float>
     const double a = static_cast<double>(share[p]);
     if (n > 0) own[p] = static_cast<float>((static_cast<double>(ratio[p]) - a * sum / n) / (1 - a));
   }
+  std::vector<float> penumbra(field.pixels(), -1);  // share of the lamp that is gone, in penumbrae
   for (std::size_t p = 0; p < field.pixels(); ++p) {
     if (!field.beyond.empty() && field.beyond[p]) {
       result.labels[p] = Label::unknown;
@@ -167,15 +195,13 @@ Segmentation labels_of(const Field& field, std::size_t k, std::span<const float>
       result.labels[p] = Label::object;
       continue;
     }
-    // The level of the shadow nearby: of the darkest wholly ground pixel.
-    double least = 1;
-    around(field, p, reach, [&](std::size_t q) {
-      if (share[q] <= 0.02f) least = std::min(least, static_cast<double>(ratio[q]));
-    });
-    least = std::clamp(least, 0.0, 0.5);
-    if (static_cast<double>(own[p]) < 0.5 * (1 + least)) result.labels[p] = Label::shadow;
+    const Darkest darkest = darkest_near(field, p, share, ratio);
+    const double least = std::min(darkest.level, 0.5), v = static_cast<double>(own[p]);
+    if (v < 0.5 * (1 + least)) result.labels[p] = Label::shadow;
+    if (darkest.wide && v > least + still_falls && v < 1 - still_falls)
+      penumbra[p] = static_cast<float>(std::clamp((1 - v) / (1 - least), 0.0, 1.0));
   }
-  add_shadow_shares(field, own, result);
+  add_shadow_shares(field, own, penumbra, result);
   return result;
 }
 
