@@ -15,7 +15,7 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int samples = 33;           // across an edge
 constexpr double narrowest_px = 4;    // half of the window, to begin with
-constexpr double widest_px = 40;      // and at most
+constexpr double widest_px = 48;      // and at most
 constexpr double most_misfit = 0.05;  // root mean square over the step
 constexpr double whole_edge = 1.5;    // of the window over w, for an edge to be in it with both of its levels
 constexpr std::size_t one_in = 3;     // points

@@ -3,7 +3,7 @@
 // A lamp that is seen as a disc of radius r lets go of the ground's light along a semicircle's integral:
 //   y(t) = dark + slope t + (lit - dark) F((t - c) / w),   F(u) = 1/2 + (u sqrt(1 - u^2) + asin u) / pi,
 // t across the rim, px, positive outwards. The spread is the standard deviation of what F is the integral of, w / 2. A
-// lens' blur is told by the same family, whose form hardly matters there. Levels and slope are eliminated (variable
+// lens' blur is told by the same family, a quarter too narrow. Levels and slope are eliminated (variable
 // projection, Golub & Pereyra 1973); the window grows until it holds the whole edge.
 #pragma once
 #include <functional>
