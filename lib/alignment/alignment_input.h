@@ -44,6 +44,7 @@ struct AlignmentInput {
   std::vector<camera::CameraModel> models;  // of the lenses
   std::vector<bool> lamp_stated;
   std::string ground;  // its object; empty: none
+  Rigid<frame::World, frame::Object> world_from_ground{};
   // Position in the straightened picture of a pixel of lens `lens`, and back.
   Vec2 straight(std::size_t lens, Vec2 pixel) const;
   Vec2 bent(std::size_t lens, Vec2 straight) const;

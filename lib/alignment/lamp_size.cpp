@@ -3,8 +3,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <tuple>
 
 #include "alignment/edge_spread.h"
 #include "alignment/model_region.h"
@@ -25,15 +28,12 @@ struct Measured {
   double lever = 0, variance = 0;  // px^2 / m^2, px^2
 };
 
-// What the edges of sighting k would be wide under a lamp of that size.
-std::vector<double> simulated_spread(const AlignmentInput& in, const Setting& setting, std::size_t k, double radius_m) {
-  const Sighting& sighting = in.question.sightings[k];
-  const std::size_t lens = setting.stations[sighting.subject.station].lens;
-  std::vector<float> light = model_region(in, setting, sighting.subject, radius_m);
-  for (float& v : light) v = 1 - v;
-  const Luminance picture(in.models[lens].width_px(), in.models[lens].height_px(), std::move(light));
-  return edge_spreads(picture, in.rims[k].in_picture,
-                      [&](Vec2 pixel) { return sighting.unseen && sighting.unseen(in.straight(lens, pixel)); });
+// |g|^2 of a rim's place.
+double lever_of(const Setting& setting, const RimSubject& shadow, const RimPlace& place) {
+  std::array<double, 3> g{};
+  slopes_of(setting, {{Block::lamp_shift, *shadow.lamp}}, ground_axes(setting), shadow.station, shadow.body,
+            shadow.lamp, place.mesh_point, place.outward, g.data());
+  return g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
 }
 
 // `first`: radii of the lamps as far as they are known; 0: of points.
@@ -43,20 +43,14 @@ std::vector<Measured> measured(const AlignmentInput& in, const Setting& setting,
   for (std::size_t k = 0; k < in.rims.size(); ++k) {
     const Sighting& sighting = in.question.sightings[k];
     if (!sighting.subject.lamp || in.rims[k].spread_px.empty()) continue;
-    const ModelRim rim(setting, sighting.subject);
-    const double radius = first[*sighting.subject.lamp];
-    std::vector<double> simulated;
-    if (radius > 0) simulated = simulated_spread(in, setting, k, radius);
+    const std::vector<double> levers = edge_levers(in, setting, k, first[*sighting.subject.lamp]);
     for (std::size_t i = 0; i < sighting.points.size(); ++i) {
       const RimPoint& point = sighting.points[i];
-      if (!std::isfinite(in.rims[k].spread_px[i]) || (radius > 0 && !std::isfinite(simulated[i]))) continue;
-      const auto place = rim.nearest(point.pixel, point.outward, reach_px);
-      if (!place) continue;
+      if (!std::isfinite(in.rims[k].spread_px[i]) || !std::isfinite(levers[i])) continue;
       const auto stretch =
           stretches.try_emplace({k, point.loop, static_cast<long>(point.arc_px / stretch_px)}, stretches.size());
       all.push_back({*sighting.subject.lamp, setting.stations[sighting.subject.station].lens, stretch.first->second,
-                     radius > 0 ? 4 * std::pow(simulated[i] / radius, 2) : lever_of(setting, sighting.subject, *place),
-                     std::pow(in.rims[k].spread_px[i], 2)});
+                     levers[i], std::pow(in.rims[k].spread_px[i], 2)});
     }
   }
   return all;
@@ -126,11 +120,28 @@ std::vector<LampSize> sizes_of(const AlignmentInput& in, const Setting& setting,
 
 }  // namespace
 
-double lever_of(const Setting& setting, const RimSubject& shadow, const RimPlace& place) {
-  std::array<double, 3> g{};
-  slopes_of(setting, {{Block::lamp_shift, *shadow.lamp}}, ground_axes(setting), shadow.station, shadow.body,
-            shadow.lamp, place.mesh_point, place.outward, g.data());
-  return g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+std::vector<double> edge_levers(const AlignmentInput& in, const Setting& setting, std::size_t k, double radius_m) {
+  const Sighting& sighting = in.question.sightings[k];
+  std::vector<double> levers(sighting.points.size(), std::numeric_limits<double>::quiet_NaN());
+  if (radius_m > 0) {
+    const std::size_t lens = setting.stations[sighting.subject.station].lens;
+    std::vector<float> light = model_region(in, setting, sighting.subject, radius_m);
+    for (float& v : light) v = 1 - v;
+    const Luminance picture(in.models[lens].width_px(), in.models[lens].height_px(), std::move(light));
+    const std::vector<double> spread = edge_spreads(picture, in.rims[k].in_picture, [&](Vec2 pixel) {
+      return sighting.unseen && sighting.unseen(in.straight(lens, pixel));
+    });
+    for (std::size_t i = 0; i < levers.size(); ++i) levers[i] = 4 * std::pow(spread[i] / radius_m, 2);
+    return levers;
+  }
+  const ModelRim rim(setting, sighting.subject);
+  for (std::size_t i = 0; i < levers.size(); ++i) {
+    const RimPoint& point = sighting.points[i];
+    if (!std::isfinite(in.rims[k].spread_px[i])) continue;
+    if (const auto place = rim.nearest(point.pixel, point.outward, reach_px))
+      levers[i] = lever_of(setting, sighting.subject, *place);
+  }
+  return levers;
 }
 
 std::vector<LampSize> lamp_sizes(const AlignmentInput& in, const Setting& setting) {

@@ -24,7 +24,8 @@ struct LampSize {
 // One for each lamp of the setting.
 std::vector<LampSize> lamp_sizes(const AlignmentInput& in, const Setting& setting);
 
-// |g|^2 of a rim's place, px^2 / m^2: by how much it moves with the lamp.
-double lever_of(const Setting& setting, const RimSubject& shadow, const RimPlace& place);
+// |g|^2 at the points of sighting k, px^2 / m^2, by the simulated shadow of a lamp of `radius_m`, or for 0 of a
+// straight edge; NaN where nobody can tell.
+std::vector<double> edge_levers(const AlignmentInput& in, const Setting& setting, std::size_t k, double radius_m);
 
 }  // namespace gonio::alignment

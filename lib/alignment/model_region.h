@@ -1,5 +1,5 @@
 // How much of each pixel the setting covers with a body, or takes of a lamp's light: exact but for a large lamp, which
-// is a few dozen places. Private to alignment/.
+// is a few dozen places.
 #pragma once
 #include <vector>
 

@@ -1,6 +1,6 @@
 // What finding rims in masks does to rims: pixels and smoothing round corners off and pull bends inwards. The aligned
 // model's own regions go through the same steps, and what happens to their rims there is taken off those that were
-// seen. Private to alignment/.
+// seen.
 #pragma once
 #include "alignment/alignment_input.h"
 

@@ -1,5 +1,6 @@
 // Meshes of instances, vertex by vertex.
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -17,6 +18,18 @@ void each_vertex(Instance& instance, const F& f) {
       mesh->normals.empty() ? mesh::averaged_normals(mesh->positions_m, mesh->triangles) : mesh->normals;
   for (std::size_t i = 0; i < copy->positions_m.size(); ++i) copy->positions_m[i] = f(mesh->positions_m[i], normals[i]);
   instance.shape = std::shared_ptr<const mesh::Mesh>(std::move(copy));
+}
+
+// Of the box of all vertices that a triangle uses, in the mesh's frame.
+inline Vec3 middle_of_box(const mesh::Mesh& mesh) {
+  Vec3 lower = mesh.positions_m[mesh.triangles.front()[0]], upper = lower;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle) {
+      const Vec3 p = mesh.positions_m[v];
+      lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+      upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+    }
+  return (lower + upper) * 0.5;
 }
 
 }  // namespace gonio::scene

@@ -108,11 +108,7 @@ class Field {
   std::vector<double> value_;
 };
 
-constexpr std::uint8_t ground = 0, object = 1, shadow = 2;
-
-struct Labels {
-  std::vector<std::uint8_t> of;  // per pixel
-};
+}  // namespace
 
 Labels photographed(const Setting& setting, std::size_t station, std::size_t lamp, const WorldWish& wish,
                     std::mt19937_64& random) {
@@ -180,6 +176,8 @@ void add_rims(World& world, const Labels& labels, std::size_t station, std::size
     world.input.rims.push_back(std::move(rim));
   }
 }
+
+namespace {
 
 Vec3 direction(double azimuth, double height) {
   return {std::cos(azimuth) * std::cos(height), std::sin(azimuth) * std::cos(height), std::sin(height)};

@@ -41,6 +41,15 @@ struct World {
 };
 World world_of(const WorldWish& wish);
 
+// Its masks, with their errors: of one photograph, and their rims as sightings of the world's input.
+constexpr std::uint8_t ground = 0, object = 1, shadow = 2;
+struct Labels {
+  std::vector<std::uint8_t> of;  // per pixel
+};
+Labels photographed(const Setting& setting, std::size_t station, std::size_t lamp, const WorldWish& wish,
+                    std::mt19937_64& random);
+void add_rims(World& world, const Labels& labels, std::size_t station, std::size_t lamp, const WorldWish& wish);
+
 // Truth minus found, and the standard deviations: of all free numbers.
 struct Miss {
   std::vector<double> error, sigma;

@@ -39,7 +39,8 @@ const std::set<std::string> of_other_simulators = {"print.growth", "print.light-
 // machine; air that scatters; what a mirror ball's light, place and metal were taken for; what moved between two
 // exposures; light that lies on a chart; what full pixels give their neighbours, what some gather
 // in the dark, what filters that are not the eye's do to colours, what an open aperture loses at a rim; what
-// bends the points of structured light; and sizes that differ from a model's along each axis.
+// bends the points of structured light; sizes that differ from a model's along each axis, what curls, and
+// light that masks of shadows leave out.
 const std::set<std::string> besides = words(
     "lens.rational surface.residue surface.walls tracks.scale ct.threshold ct.scale ct.blur ct.cupping "
     "ct.beam-hardening ct.scatter ct.ring ct.streak ct.axis-tilt robot.warm-up robot.joule-heating "
@@ -49,7 +50,8 @@ const std::set<std::string> besides = words(
     "robot.compliance volume.fog probe.distance probe.centre probe.reflectance scene.moved sensor.dark-current "
     "colour.glare sensor.blooming sensor.hot-pixel colour.metamerism optics.lens-shading projector.gamma "
     "projector.lens projector.moved rig.drift structured-light.subsurface structured-light.motion "
-    "structured-light.interreflection structured-light.edge structured-light.defocus geometry.shrinkage");
+    "structured-light.interreflection structured-light.edge structured-light.defocus geometry.shrinkage "
+    "geometry.bend ground.not-flat mask.caustic");
 
 // Owed and not there yet: printed, until they are declared and leave this list.
 const std::set<std::string> awaited = {};

@@ -39,6 +39,8 @@ const Domain& boards() {
            {"volume.", "nothing lies between board and camera that light goes through"},
            {"scene.", "every view has its own pose: a board may move between them"},
            {"transport.", "corners are places, and keep no brightness"},
+           {"ground.", "corners lie on boards, and have no outline against a ground"},
+           {"mask.", "corners lie on boards, and have no outline against a ground"},
            {"geometry.", "every view's pose is free, and the board's own shape is board.warp and board.scale"},
            {"reference.", "corners are places, and keep no brightness"},
            {"robot.", "no robot is known here: hand-eye sets (robot) have its joints"},

@@ -49,6 +49,8 @@ const Domain& clouds() {
           {"scene.", "what moves while patterns are shown is structured-light.motion"},
           {"transport.", "what light from other parts of the thing does to phases is structured-light.interreflection"},
           {"reference.", "points are held against no tile"},
+          {"ground.", "points are places on a surface; rims are outlines"},
+          {"mask.", "points are places on a surface; rims are outlines"},
           {"geometry.", "the shape is known, form and size; where it stands is free"},
           {"lens.",
            "three numbers of a lens are asked here (lens.radial, lens.tangential); a camera's finer terms are left to "

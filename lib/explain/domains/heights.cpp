@@ -36,6 +36,8 @@ const Domain& heights() {
            {"transport.", "a height map has no light"},
            {"volume.", "a height map ends at the surface"},
            {"reference.", "a height map is held against no reference"},
+           {"ground.", "a height map has no light and no rims"},
+           {"mask.", "a height map has no light and no rims"},
            {"geometry.",
             "a height map is levelled and held against no shape: where it stands and how large it is stays unknown"},
            {"lens.", "a height map has been rectified by its instrument; its scales are those that its file states"},

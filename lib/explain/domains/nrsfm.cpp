@@ -24,6 +24,8 @@ const Domain& nrsfm() {
           {"structured-light.", "tracks have no projector"},
           {"lens.", "tracks of one view under an orthographic camera: bent rays and a bent shape are one and the same"},
           {"camera.", "tracks state neither exposure nor temperature"},
+          {"ground.", "tracks are points, and have no rims"},
+          {"mask.", "tracks are points, and have no rims"},
           {"board.", "the shape is unknown: a board is one that does not deform"},
           {"light.", "tracks are places, and keep no brightness"},
           {"optics.", "tracks are places, and keep no brightness"},

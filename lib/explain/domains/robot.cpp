@@ -72,6 +72,8 @@ const Domain& robot() {
           {"scene.", "the board stands still, and each pose of it is held against the arm"},
           {"transport.", "poses are places, and keep no brightness"},
           {"reference.", "poses are places, and keep no brightness"},
+          {"ground.", "what an arm tells are poses, and no rims"},
+          {"mask.", "what an arm tells are poses, and no rims"},
           {"geometry.", "the board stands still and is measured; where it stands and where the camera sits is free"},
           {"tracks.", "no shape deforms, and corners are named"},
           {"marker.", "poses come from boards; markers of other kinds are tables of the model markers"},

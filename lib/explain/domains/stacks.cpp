@@ -16,6 +16,8 @@ std::vector<Untouched> stack_reasons() {
       {"structured-light.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
       {"lens.", "camera and scene stand still: where a pixel looks cancels"},
       {"camera.", "camera and scene stand still while and between pictures are taken"},
+      {"ground.", "a stack has no geometry, and no rims"},
+      {"mask.", "a stack has no geometry, and no rims"},
       {"board.", "camera and scene stand still: where a pixel looks cancels"},
       {"light.finite-size", "its penumbrae need what casts the shadow, and a stack has no geometry"},
       {"light.lobe", "the lamps are distant, and their strengths and slopes across the picture are free"},

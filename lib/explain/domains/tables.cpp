@@ -28,6 +28,8 @@ const Domain& tables() {
           {"projector.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
           {"rig.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
           {"structured-light.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
+          {"ground.", "rows have no rims"},
+          {"mask.", "rows have no rims"},
           {"board.", "corners of boards are the domain boards"},
           {"lens.",
            "a table's rows have no pixels but those of tracks and markers, to which lens.radial says what so few can "

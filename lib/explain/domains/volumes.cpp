@@ -32,6 +32,8 @@ const Domain& volumes() {
           {"transport.", "what light does between bodies is ct.scatter for X-rays"},
           {"volume.", "the index of refraction of X-rays is one; what they lose on their way is the volume itself"},
           {"reference.", "the reference is a shape, and no white tile"},
+          {"ground.", "a volume has no rims: what bounds a body there is ct.threshold"},
+          {"mask.", "a volume has no rims: what bounds a body there is ct.threshold"},
           {"geometry.",
            "what a volume shows of it has the names ct.threshold (offset), ct.scale (scale) and ct.axis-tilt (pose)"},
           {"board.", "a scanned part is no board of corners"},

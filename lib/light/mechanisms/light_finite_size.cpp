@@ -14,7 +14,7 @@ const Mechanism& light_finite_size() {
       .source = "Lambert 1760; Shirley, Wang & Zimmerman 1996, section 3.2.1",
       .stage = "light",
       .target = Target::light,
-      .domains = {"tables", "images"},
+      .domains = {"tables", "images", "outlines"},
       .parameters = {{.name = "radius_m",
                       .unit = "m",
                       .neutral = 0,

@@ -1,9 +1,9 @@
 // geometry.shrinkage: about the middle of the box, along the object's own axes.
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "scene/edit.h"
+#include "scene/vertices.h"
 
 namespace gonio::mechanism {
 const Mechanism& geometry_shrinkage();
@@ -21,15 +21,7 @@ void shrink(Instance& instance, std::span<const double> a) {
     plane->size_x_m *= factor.x, plane->size_y_m *= factor.y;
   } else {
     const auto& mesh = *std::get<std::shared_ptr<const mesh::Mesh>>(instance.shape);
-    Vec3 lower = mesh.positions_m[mesh.triangles.front()[0]],
-         upper = lower;  // of what is there: not of unused vertices
-    for (const auto& triangle : mesh.triangles)
-      for (const std::uint32_t v : triangle) {
-        const Vec3 p = mesh.positions_m[v];
-        lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
-        upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
-      }
-    const Vec3 middle = (lower + upper) * 0.5;
+    const Vec3 middle = middle_of_box(mesh);
     auto copy = std::make_shared<mesh::Mesh>(mesh);
     for (Vec3& p : copy->positions_m) p = p - Vec3{a[0], a[1], a[2]} * (p - middle);
     for (Vec3& n : copy->normals) n = normalized(Vec3{n.x / factor.x, n.y / factor.y, n.z / factor.z});

@@ -14,7 +14,7 @@ const Mechanism& geometry_offset() {
       .source = "iso-surface of a CT scan: Carmignato, Dewulf & Leach 2018",
       .stage = "geometry",
       .target = Target::object,
-      .domains = {"images"},
+      .domains = {"images", "outlines"},
       .parameters = {{.name = "offset_m",
                       .unit = "m",
                       .neutral = 0,

@@ -12,7 +12,7 @@ const Mechanism& geometry_scale() {
       .source = "shrinkage of printed parts as measured with calipers",
       .stage = "geometry",
       .target = Target::object,
-      .domains = {"images"},
+      .domains = {"images", "outlines"},
       .parameters = {{.name = "growth",
                       .unit = "1",
                       .neutral = 0,

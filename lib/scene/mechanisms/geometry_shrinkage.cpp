@@ -22,7 +22,7 @@ const Mechanism& geometry_shrinkage() {
       .source = "a printed figure: 3, 6 and 1 % (Hannemose et al. 2020)",
       .stage = "geometry",
       .target = Target::object,
-      .domains = {},
+      .domains = {"outlines"},
       .parameters = {along("shrink_x", "share by which it is smaller along the model's x"),
                      along("shrink_y", "share by which it is smaller along the model's y"),
                      along("shrink_z", "share by which it is smaller along the model's z")},

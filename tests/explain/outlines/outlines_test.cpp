@@ -1,0 +1,165 @@
+// Rims against aligned models: predictions against rims that are made anew, and what is named on simulated photographs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "alignment/alignment_world.h"
+#include "explain/outlines/outline_parameters.h"
+#include "explain/outlines/outlines_problem.h"
+#include "inference/explanation.h"
+
+namespace gonio::explain {
+namespace {
+
+using alignment::Block;
+using alignment::Setting;
+using alignment::testing::World;
+using alignment::testing::WorldWish;
+
+// What somebody would have who knows where everything stands, but not `wrong`.
+OutlinesInput believed(World& world, const std::function<void(Setting&)>& wrong, bool lamps_held = false) {
+  alignment::AlignmentInput& in = world.input;
+  in.stated = world.truth;
+  for (std::size_t b = 0; b < in.stated.bodies.size(); ++b) in.stated.bodies[b].shape = &in.shapes[b];
+  wrong(in.stated);
+  std::erase_if(in.question.freedoms, [&](const alignment::Freedom& f) {
+    return f.block == Block::body_scale || (lamps_held && f.block == Block::lamp_shift);
+  });
+  in.question.contacts.clear();
+  in.question.stated = in.stated;
+  in.ground = "table", in.bodies = {"solid"}, in.cameras = {"camera"};
+  in.lamps.clear(), in.images_of_station.clear();
+  for (std::size_t l = 0; l < in.stated.lamps_m.size(); ++l) in.lamps.push_back("lamp-" + std::to_string(l));
+  for (std::size_t s = 0; s < in.stated.stations.size(); ++s)
+    in.images_of_station.push_back({"view-" + std::to_string(s)});
+  for (std::size_t k = 0; k < in.rims.size(); ++k) {
+    const auto& subject = in.question.sightings[k].subject;
+    in.rims[k].image = "view-" + std::to_string(subject.station) +
+                       (subject.lamp ? "-" + std::to_string(*subject.lamp) : std::string());
+  }
+  return outlines_of(std::move(in), std::vector<double>(world.truth.lamps_m.size(), 0.0));
+}
+
+const WorldWish seen{
+    .solid = 0, .views = 3, .lamps = 2, .seed = 11, .error_px = 0.1, .outliers = 0.005, .size_px = 360};
+
+std::vector<std::string> named(const Problem& problem, const Explanation& e) {
+  std::vector<std::string> ids;
+  for (const std::size_t n : e.named) ids.push_back(problem.candidates()[n].id());
+  return ids;
+}
+
+Explanation explained(const Problem& problem) {
+  Options options;
+  options.negative_controls = 12;
+  return explain(problem, options);
+}
+
+double value_of(const Problem& problem, const Explanation& e, const std::string& name) {
+  for (std::size_t p = 0; p < problem.parameters().size(); ++p)
+    if (problem.parameters()[p].name == name) return e.values[p];
+  ADD_FAILURE() << name;
+  return 0;
+}
+
+// The model's own rim, moved, against what is predicted of its points.
+TEST(Outlines, PredictWhereMovedModelsHaveTheirRims) {
+  World world = alignment::testing::world_of(seen);
+  const OutlinesInput input = believed(world, [](Setting&) {});
+  OutlineModel model(input);
+  const OutlineParameters declared = outline_parameters(input, model);
+  const auto amount = [&](const std::string& name, double value) {
+    std::vector<double> values;
+    for (const Parameter& p : declared.parameters) values.push_back(p.neutral);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (declared.parameters[k].name == name) values[k] = value;
+    return values;
+  };
+  for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"geometry.shrinkage.shrink_x", 0.02},
+                                                                               {"geometry.scale.growth", 0.01},
+                                                                               {"objects/solid/turn_y_rad", 0.01},
+                                                                               {"lights/lamp-0/shift_x_m", 0.005}}) {
+    const std::vector<double> values = amount(name, value);
+    const Setting moved = model.setting(values);
+    double worst = 0, most = 0;
+    for (std::size_t g = 0; g < input.views.size(); ++g) {
+      const alignment::ModelRim before(input.in.stated, input.views[g].subject), after(moved, input.views[g].subject);
+      std::vector<double> predicted(input.views[g].rows.size());
+      model.predict(values, g, predicted);
+      std::vector<double> off;
+      for (std::size_t i = 0; i < predicted.size(); ++i) {
+        const OutlineRow& row = input.views[g].rows[i];
+        const auto here = before.nearest(row.pixel, row.outward, 1);
+        const auto place = after.nearest(row.pixel, row.outward, 8);
+        if (!here || !place) continue;
+        off.push_back(std::abs(here->distance_px - place->distance_px - predicted[i]));
+        most = std::max(most, std::abs(predicted[i]));
+      }
+      std::sort(off.begin(), off.end());
+      worst = std::max(worst, off[off.size() * 9 / 10]);
+    }
+    EXPECT_GT(most, 0.3) << name;
+    EXPECT_LT(worst, 0.03 + 0.05 * most) << name;
+  }
+}
+
+TEST(Outlines, NothingIsNamedWhereNothingIsWrong) {
+  World world = alignment::testing::world_of(seen);
+  const auto problem = outlines_problem(believed(world, [](Setting&) {}));
+  EXPECT_THAT(named(*problem, explained(*problem)), ::testing::IsEmpty());
+}
+
+TEST(Outlines, ShrinkageAlongEachAxisIsNamed) {
+  WorldWish wish = seen;
+  wish.scale_sigma = 0.03;
+  World world = alignment::testing::world_of(wish);
+  const Vec3 scale = world.truth.bodies[0].scale;
+  const auto problem = outlines_problem(believed(world, [](Setting& s) { s.bodies[0].scale = {1, 1, 1}; }));
+  const Explanation e = explained(*problem);
+  EXPECT_THAT(named(*problem, e), ::testing::ElementsAre("geometry.shrinkage"));
+  EXPECT_NEAR(value_of(*problem, e, "geometry.shrinkage.shrink_x"), 1 - scale.x, 0.004);
+  EXPECT_NEAR(value_of(*problem, e, "geometry.shrinkage.shrink_y"), 1 - scale.y, 0.004);
+  EXPECT_NEAR(value_of(*problem, e, "geometry.shrinkage.shrink_z"), 1 - scale.z, 0.004);
+}
+
+TEST(Outlines, ALampThatStandsElsewhereIsNamed) {
+  World world = alignment::testing::world_of(seen);
+  const auto problem = outlines_problem(believed(
+      world,
+      [](Setting& s) {
+        s.lamps_m[1] += Vec3{0.012, -0.008, 0.01};
+      },
+      true));
+  const Explanation e = explained(*problem);
+  EXPECT_THAT(named(*problem, e), ::testing::ElementsAre("light.position"));
+  EXPECT_NEAR(value_of(*problem, e, "lamp-1/shift_x_m"), -0.012, 0.004);
+}
+
+// A patch of light within each shadow, as a body of glass makes it.
+TEST(Outlines, LightWithinShadowsIsNamed) {
+  World world = alignment::testing::world_of(seen);
+  world.input.rims.clear(), world.input.question.sightings.clear();
+  std::mt19937_64 random(3);
+  for (std::size_t v = 0; v < world.truth.stations.size(); ++v)
+    for (std::size_t l = 0; l < world.truth.lamps_m.size(); ++l) {
+      alignment::testing::Labels labels = alignment::testing::photographed(world.truth, v, l, seen, random);
+      double x = 0, y = 0, n = 0;
+      for (std::size_t i = 0; i < labels.of.size(); ++i)
+        if (labels.of[i] == alignment::testing::shadow)
+          x += static_cast<double>(i % 360), y += static_cast<double>(i / 360), n += 1;
+      if (n < 600) continue;
+      for (std::size_t i = 0; i < labels.of.size(); ++i)
+        if (labels.of[i] == alignment::testing::shadow &&
+            std::hypot(static_cast<double>(i % 360) - x / n, static_cast<double>(i / 360) - y / n) < 9)
+          labels.of[i] = alignment::testing::ground;
+      alignment::testing::add_rims(world, labels, v, l, seen);
+    }
+  const auto problem = outlines_problem(believed(world, [](Setting&) {}));
+  EXPECT_THAT(named(*problem, explained(*problem)), ::testing::ElementsAre("mask.caustic"));
+}
+
+}  // namespace
+}  // namespace gonio::explain
