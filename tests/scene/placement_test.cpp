@@ -41,9 +41,14 @@ TEST(Placement, EveryMechanismOfObjectsIsKnownAndVanishesAtNeutral) {
     ASSERT_TRUE(applies_to_objects(*m)) << m->id;
     std::vector<double> neutral, other;
     for (const auto& p : m->parameters) neutral.push_back(p.neutral), other.push_back(p.start);
-    const Instance before = standing(tetrahedron());
+    const bool ground = m->id.starts_with("ground.");  // of planes
+    const Instance before = ground ? standing(Plane{1, 1}) : standing(tetrahedron());
     const Instance same = moved(before, *m, neutral), changed = moved(before, *m, other);
     EXPECT_EQ(same.world_from_object, before.world_from_object) << m->id;
+    if (ground) {
+      EXPECT_TRUE(std::holds_alternative<Plane>(same.shape) && !std::holds_alternative<Plane>(changed.shape)) << m->id;
+      continue;
+    }
     EXPECT_EQ(vertex(same, 3), vertex(before, 3)) << m->id;
     EXPECT_FALSE(vertex(changed, 3) == vertex(before, 3)) << m->id;
   }
@@ -76,6 +81,38 @@ TEST(Placement, GrowthOffsetAndContactDoWhatTheySay) {
   EXPECT_NEAR(vertex(sunk, 2).z, vertex(before, 2).z - 0.002, 1e-12);
   const Instance ball = moved(standing(Sphere{0.1}), of("geometry.scale"), std::vector<double>{-0.1});
   EXPECT_NEAR(std::get<Sphere>(ball.shape).radius_m, 0.09, 1e-12);
+}
+
+TEST(Placement, BendingIsASquareAboutTheMiddle) {
+  const Instance before = standing(tetrahedron());
+  const std::vector<double> curl{0.4, -0.2, 0.1};
+  const Instance bent = moved(before, of("geometry.bend"), curl);
+  const auto& was = *std::get<std::shared_ptr<const mesh::Mesh>>(before.shape);
+  const auto& is = *std::get<std::shared_ptr<const mesh::Mesh>>(bent.shape);
+  Vec3 lower = was.positions_m[0], upper = lower;
+  for (const Vec3 p : was.positions_m) {
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), 0};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), 0};
+  }
+  for (std::size_t i = 0; i < was.positions_m.size(); ++i) {
+    const Vec3 d = was.positions_m[i] - (lower + upper) * 0.5;
+    const double height = 0.5 * (0.4 * d.x * d.x - 0.2 * d.y * d.y) + 0.1 * d.x * d.y;
+    EXPECT_NEAR(is.positions_m[i].z - was.positions_m[i].z, height, 1e-15);
+  }
+}
+
+TEST(Placement, APlaneThatIsNotFlatIsAMeshOfTheSameHeights) {
+  const Instance bent = moved(standing(Plane{2, 1}), of("ground.not-flat"), std::vector<double>{0.4, -0.2, 0.1});
+  const auto& mesh = *std::get<std::shared_ptr<const mesh::Mesh>>(bent.shape);
+  for (std::size_t i = 0; i < mesh.positions_m.size(); ++i) {
+    const Vec3 p = mesh.positions_m[i];
+    EXPECT_NEAR(p.z, 0.2 * p.x * p.x - 0.1 * p.y * p.y + 0.1 * p.x * p.y, 1e-15);
+    EXPECT_NEAR(norm(mesh.normals[i]), 1, 1e-12);
+    EXPECT_GT(mesh.normals[i].z, 0.5);
+  }
+  for (const auto& t : mesh.triangles)
+    EXPECT_GT(cross(mesh.positions_m[t[1]] - mesh.positions_m[t[0]], mesh.positions_m[t[2]] - mesh.positions_m[t[0]]).z,
+              0);
 }
 
 TEST(Placement, NamesAndCountsAreChecked) {

@@ -32,6 +32,7 @@ const Domain& outlines() {
       .name = "outlines",
       .sentence = "rims of objects and of their shadows, which align has found and placed the object by",
       .order = 9,
+      .objects = outlines_objection,
       .applies = has_outlines,
       .within_reach = outlines_within_reach,
       .problems =

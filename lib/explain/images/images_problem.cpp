@@ -108,7 +108,14 @@ void ImagesProblem::bind(const manifest::Document& document) {
   };
   model_->add_uses(prepared(given_uses(setting)), true);
   const std::size_t given = model_->uses().size();
-  model_->add_uses(prepared(candidate_uses(setting)), false);
+  std::vector<Use> asked = candidate_uses(setting);
+  // What the fast model can do to a surface and a scene cannot would end the run where it wins.
+  std::erase_if(asked, [&](const Use& use) {
+    if (use.mechanism->target != mechanism::Target::surface || scene::beyond_rendering(*use.mechanism)) return false;
+    const std::vector<std::string> able = scene::mechanism_targets(scene_->appearance, *use.mechanism);
+    return !std::ranges::all_of(use.on, [&](const std::string& name) { return std::ranges::count(able, name) > 0; });
+  });
+  model_->add_uses(prepared(std::move(asked)), false);
   layout_.start = model_->layout().start;
   bindings_ = bind_parameters(document, recordings_, layout_, model_->uses(), given);
   parameters_ = bindings_.parameters;

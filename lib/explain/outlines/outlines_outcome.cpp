@@ -132,6 +132,22 @@ std::string rim_svg(const OutlinesInput& input, const OutlineView& view, std::sp
 
 }  // namespace
 
+double change_px(const Problem& problem, const OutlinesInput& input, const Explanation& e, std::size_t candidate) {
+  std::vector<double> without = e.values;
+  for (const std::size_t p : problem.candidates()[candidate].parameters) without[p] = problem.parameters()[p].neutral;
+  const Observations& o = problem.observations();
+  std::array<double, 2> sum{}, count{};
+  for (std::size_t g = 0; g < o.groups(); ++g) {
+    std::vector<double> with(o.first[g + 1] - o.first[g]), bare(with.size());
+    problem.predict(e.values, g, with), problem.predict(without, g, bare);
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      const bool width = input.views[g].rows[i].width;
+      sum[width] += (with[i] - bare[i]) * (with[i] - bare[i]), count[width] += 1;
+    }
+  }
+  return std::sqrt(std::max(sum[0] / std::max(1.0, count[0]), sum[1] / std::max(1.0, count[1])));
+}
+
 std::string outlines_remarks(const Problem& problem, const OutlinesInput& input, const Explanation& e) {
   std::size_t offsets = 0, widths = 0;
   for (const OutlineView& v : input.views)
@@ -141,16 +157,7 @@ std::string outlines_remarks(const Problem& problem, const OutlinesInput& input,
   for (const std::size_t n : e.named) {
     const Candidate& c = problem.candidates()[n];
     if (c.parameters.empty()) continue;
-    std::vector<double> without = e.values;
-    for (const std::size_t p : c.parameters) without[p] = problem.parameters()[p].neutral;
-    const Observations& o = problem.observations();
-    double sum = 0;
-    for (std::size_t g = 0; g < o.groups(); ++g) {
-      std::vector<double> with(o.first[g + 1] - o.first[g]), bare(with.size());
-      problem.predict(e.values, g, with), problem.predict(without, g, bare);
-      for (std::size_t i = 0; i < with.size(); ++i) sum += (with[i] - bare[i]) * (with[i] - bare[i]);
-    }
-    const double rms = std::sqrt(sum / static_cast<double>(o.rows()));
+    const double rms = change_px(problem, input, e, n);
     if (rms > 0) text += " " + c.id() + " changes them by " + quantity(rms, "px") + " (root mean square).";
   }
   return text;

@@ -6,6 +6,8 @@
 
 namespace gonio::explain {
 
+// Root mean square of what a named candidate changes in the rims' offsets, or in the edges' widths: the larger one, px.
+double change_px(const Problem& problem, const OutlinesInput& input, const Explanation& e, std::size_t candidate);
 std::string outlines_remarks(const Problem& problem, const OutlinesInput& input, const Explanation& e);
 void upgrade_outlines(const Problem& problem, const OutlineModel& model, const OutlinesInput& input,
                       const Explanation& e, manifest::Document& document);

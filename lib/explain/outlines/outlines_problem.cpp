@@ -8,15 +8,17 @@
 #include "explain/outlines/outline_parameters.h"
 #include "explain/outlines/outlines_outcome.h"
 #include "inference/estimable.h"
+#include "inference/wording.h"
 #include "manifest/document.h"
 
 namespace gonio::explain {
 namespace {
 
 constexpr double fall = 1e-6;
-constexpr double never = 2;         // a share: by what is left of a usual change over the noise alone
-constexpr double far_off = 100;     // times a free number's size: 1 cm, 0.1 rad, a tenth
-constexpr double estimable = 0.02;  // share of a parameter's signature that free and earlier parameters must leave
+constexpr double never = 2;          // a share: by what is left of a usual change over the noise alone
+constexpr double trusted_px = 0.05;  // of masks
+constexpr double far_off = 100;      // times a free number's size: 1 cm, 0.1 rad, a tenth
+constexpr double estimable = 0.02;   // share of a parameter's signature that free and earlier parameters must leave
 
 class OutlinesProblem final : public Problem {
  public:
@@ -50,6 +52,16 @@ class OutlinesProblem final : public Problem {
   }
   Illustration illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const override {
     return illustrate_outlines(input_, observations_, e);
+  }
+
+  std::optional<Testimony> objection(const Explanation& e, std::size_t candidate) const {
+    if (lit_inside_ == candidate) return {};
+    Testimony t{.by = "the accuracy of masks, " + quantity(trusted_px, "px") + ",",
+                .quantity = "the change of rims",
+                .unit = "px"};
+    t.after = change_px(*this, input_, e, candidate);
+    t.refuted = t.after < trusted_px;
+    return t;
   }
 
  private:
@@ -158,6 +170,11 @@ class OutlinesProblem final : public Problem {
 };
 
 }  // namespace
+
+std::optional<Testimony> outlines_objection(const Problem& problem, const Explanation& e, std::size_t candidate) {
+  const auto* outlines = dynamic_cast<const OutlinesProblem*>(&problem);
+  return outlines == nullptr ? std::nullopt : outlines->objection(e, candidate);
+}
 
 std::unique_ptr<Problem> outlines_problem(OutlinesInput input) {
   return std::make_unique<OutlinesProblem>(std::move(input));

@@ -21,10 +21,12 @@
 // Pixels of the straightened picture (alignment/setting.h), world frame, metres, radians.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "alignment/alignment_input.h"
+#include "explain/domain.h"
 #include "explain/engine.h"
 #include "manifest/sections/forward.h"
 
@@ -68,6 +70,8 @@ void outlines_within_reach(const manifest::Document& document);
 // question. `radii_m`: of the lamps, 0: points.
 OutlinesInput outlines_of(alignment::AlignmentInput in, std::vector<double> radii_m);
 OutlinesInput outlines_input(const manifest::Document& document);
+// Masks hold to a tenth of a pixel, and what changes rims by less than half of that is as well theirs.
+std::optional<Testimony> outlines_objection(const Problem& problem, const Explanation& e, std::size_t candidate);
 std::unique_ptr<Problem> outlines_problem(OutlinesInput input);
 
 inline constexpr std::size_t fewest_rims = 4;
