@@ -25,8 +25,8 @@ using Form = OutlineRole::Form;
 using Groups = std::vector<std::size_t>;
 
 constexpr double small_turn_rad = 1e-3, small_shift_m = 1e-4, small_share = 1e-3, small_blur_px = 0.1;
-constexpr double usual_mask_px = 0.1;  // by which masks are too large or too small, all around
-constexpr double sharpest_px = 0.35;   // of an edge between pixels that are squares, read between their middles
+constexpr double usual_mask_px = 0.05;  // by which masks are too large or too small, all around
+constexpr double sharpest_px = 0.35;    // of an edge between pixels that are squares, read between their middles
 
 // What the words of a freedom are: "turn_x_rad", ...
 std::vector<std::pair<std::string, std::string>> numbers_of(const alignment::Freedom& f) {

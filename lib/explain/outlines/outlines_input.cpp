@@ -99,6 +99,27 @@ double noise_of(const std::vector<OutlineRow>& rows, bool width) {
   return 1.4826 * median(std::move(steps)) / std::sqrt(2.0);
 }
 
+std::vector<double> sizes_of(std::vector<double> values) {
+  for (double& v : values) v = std::abs(v);
+  return values;
+}
+
+// How many neighbours err alike: the sum of the autocorrelation. Rows whose standard deviations are larger by its root
+// tell together as much as they do.
+double alike_rows(const std::vector<double>& left) {
+  constexpr std::size_t farthest = 24;
+  double square = 0;
+  for (const double v : left) square += v * v;
+  double sum = 1;
+  for (std::size_t lag = 1; lag <= farthest && lag < left.size() && square > 0; ++lag) {
+    double product = 0;
+    for (std::size_t i = lag; i < left.size(); ++i) product += left[i] * left[i - lag];
+    if (product < 0.1 * square) break;
+    sum += 2 * product / square;
+  }
+  return sum;
+}
+
 class RimReader {
  public:
   explicit RimReader(OutlinesInput& input) : input_(input), in_(input.in) {}
@@ -125,13 +146,20 @@ class RimReader {
   }
 
  private:
-  // With sizes along all axes free, whatever is asked later: so near to what was seen that every point meets the place
-  // of the mesh that is its own.
+  // With poses, lamps and sizes along all axes free, whatever is asked later: so near to what was seen that every point
+  // meets the place of the mesh that is its own.
   Setting nearest_fit() const {
     Question q = alignment::without_bias(in_, in_.stated, input_.radii_m);
     q.freedoms = in_.question.freedoms;
-    for (std::size_t b = 0; b < in_.bodies.size() && !input_.scales_free; ++b)
-      q.freedoms.push_back({alignment::Block::body_scale, b, usual_scale});
+    const auto free_as_well = [&q](alignment::Block block, std::size_t which, double prior = 0) {
+      const auto same = [&](const alignment::Freedom& f) { return f.block == block && f.which == which; };
+      if (std::none_of(q.freedoms.begin(), q.freedoms.end(), same)) q.freedoms.push_back({block, which, prior});
+    };
+    for (std::size_t b = 0; b < in_.bodies.size(); ++b) {
+      free_as_well(alignment::Block::body_turn, b), free_as_well(alignment::Block::body_shift, b);
+      free_as_well(alignment::Block::body_scale, b, usual_scale);
+    }
+    for (std::size_t l = 0; l < in_.lamps.size(); ++l) free_as_well(alignment::Block::lamp_shift, l);
     return alignment::settle_rims(in_.stated, q,
                                   {{.reach_px = reach_px, .width_px = 2, .both_ways = true, .most_steps = 20},
                                    {.reach_px = 5, .width_px = 0, .most_steps = 15}});
@@ -161,7 +189,7 @@ class RimReader {
       if (!measured && loop == p.loop && std::abs(p.arc_px - arc) < spacing_px) continue;
       loop = p.loop, arc = p.arc_px;
       OutlineRow row = row_of(subject, *place, p);
-      left.push_back(std::abs(place->distance_px));
+      left.push_back(place->distance_px);
       row.observed = dot(p.pixel - row.pixel, row.outward);
       if (asked && radius > 0)
         row.penumbra = -dot(wide.sightings[k].points[i].pixel - p.pixel, p.outward) / (radius * radius);
@@ -170,10 +198,11 @@ class RimReader {
       row.width = true, row.lever = levers[i], row.observed = in_.rims[k].spread_px[i];
       view.rows.push_back(row);
     }
-    const double offset = std::max({least_sigma_px, noise_of(view.rows, false), 1.4826 * median(left)}),
+    const double offset = std::max({least_sigma_px, noise_of(view.rows, false), 1.4826 * median(sizes_of(left))}),
                  width = noise_of(view.rows, true);
+    const double alike = std::sqrt(alike_rows(left));
     for (OutlineRow& r : view.rows)
-      r.sigma = r.width ? std::max({width, least_width_error_px, width_error * r.observed}) : offset;
+      r.sigma = alike * (r.width ? std::max({width, least_width_error_px, width_error * r.observed}) : offset);
   }
 
   OutlineRow row_of(const alignment::RimSubject& subject, const alignment::RimPlace& place, const RimPoint& p) {

@@ -37,6 +37,7 @@ class OutlinesProblem final : public Problem {
   std::string score_name() const override { return "RMS offset of rims"; }
   std::string group_noun() const override { return "rim"; }
   double fit_tolerance() const override { return fall; }
+  bool noise_is_known() const override { return true; }
   bool sets_outliers_aside() const override { return true; }
   Importance importance() const override { return Importance::share_of_residual; }
 

@@ -15,8 +15,8 @@
 // r^2.
 //
 // Free in the base model: what align left free, by what it wrote into "alignments": poses, lamps, cameras, scales; and
-// the blur of each lens, and what each mask is too large by all around (a tenth of a pixel). What align was told to
-// hold is asked here: geometry.pose, light.position.
+// the blur of each lens, and what each mask is too large by all around (half a tenth of a pixel). What align was told
+// to hold is asked here: geometry.pose, light.position.
 //
 // Pixels of the straightened picture (alignment/setting.h), world frame, metres, radians.
 #pragma once

@@ -6,10 +6,15 @@
 #include <cmath>
 #include <random>
 
+#include "alignment/alignment_document.h"
 #include "alignment/alignment_world.h"
+#include "data.h"
+#include "explain/outlines/believed_rims.h"
 #include "explain/outlines/outline_parameters.h"
 #include "explain/outlines/outlines_problem.h"
 #include "inference/explanation.h"
+#include "manifest/document.h"
+#include "process.h"
 
 namespace gonio::explain {
 namespace {
@@ -18,30 +23,7 @@ using alignment::Block;
 using alignment::Setting;
 using alignment::testing::World;
 using alignment::testing::WorldWish;
-
-// What somebody would have who knows where everything stands, but not `wrong`.
-OutlinesInput believed(World& world, const std::function<void(Setting&)>& wrong, bool lamps_held = false) {
-  alignment::AlignmentInput& in = world.input;
-  in.stated = world.truth;
-  for (std::size_t b = 0; b < in.stated.bodies.size(); ++b) in.stated.bodies[b].shape = &in.shapes[b];
-  wrong(in.stated);
-  std::erase_if(in.question.freedoms, [&](const alignment::Freedom& f) {
-    return f.block == Block::body_scale || (lamps_held && f.block == Block::lamp_shift);
-  });
-  in.question.contacts.clear();
-  in.question.stated = in.stated;
-  in.ground = "table", in.bodies = {"solid"}, in.cameras = {"camera"};
-  in.lamps.clear(), in.images_of_station.clear();
-  for (std::size_t l = 0; l < in.stated.lamps_m.size(); ++l) in.lamps.push_back("lamp-" + std::to_string(l));
-  for (std::size_t s = 0; s < in.stated.stations.size(); ++s)
-    in.images_of_station.push_back({"view-" + std::to_string(s)});
-  for (std::size_t k = 0; k < in.rims.size(); ++k) {
-    const auto& subject = in.question.sightings[k].subject;
-    in.rims[k].image = "view-" + std::to_string(subject.station) +
-                       (subject.lamp ? "-" + std::to_string(*subject.lamp) : std::string());
-  }
-  return outlines_of(std::move(in), std::vector<double>(world.truth.lamps_m.size(), 0.0));
-}
+using tests::believed;
 
 const WorldWish seen{
     .solid = 0, .views = 3, .lamps = 2, .seed = 11, .error_px = 0.1, .outliers = 0.005, .size_px = 360};
@@ -136,6 +118,23 @@ TEST(Outlines, ALampThatStandsElsewhereIsNamed) {
   const Explanation e = explained(*problem);
   EXPECT_THAT(named(*problem, e), ::testing::ElementsAre("light.position"));
   EXPECT_NEAR(value_of(*problem, e, "lamp-1/shift_x_m"), -0.012, 0.004);
+}
+
+// Pictures by another renderer, whose lamps were spheres of 35 mm: masks, poses and lamps as align finds them.
+TEST(RecordedRims, LampsOf35MillimetresAreNamed) {
+  GONIO_NEEDS_DATA("recordings");
+  const std::filesystem::path root = tests::data("recordings");
+  manifest::Document document = manifest::read_document(root / "practice-5.json", {.allow_outside = true});
+  tests::ScratchFolder scratch;
+  alignment::AlignmentRequest request;
+  request.masks.by = alignment::MaskWish::By::lamps;
+  request.output_path = [&](const std::string& name) { return scratch / name; };
+  ASSERT_EQ(alignment::align_document(document, request), alignment::Verdict::found);
+  const auto problem = outlines_problem(outlines_input(document));
+  const Explanation e = explained(*problem);
+  EXPECT_THAT(named(*problem, e), ::testing::ElementsAre("light.finite-size"));
+  for (const char* lamp : {"light-0", "light-1", "light-2"})
+    EXPECT_NEAR(value_of(*problem, e, std::string(lamp) + "/radius_m"), 0.035, 0.004) << lamp;
 }
 
 // A patch of light within each shadow, as a body of glass makes it.
