@@ -132,7 +132,7 @@ std::string rim_svg(const OutlinesInput& input, const OutlineView& view, std::sp
 
 }  // namespace
 
-double change_px(const Problem& problem, const OutlinesInput& input, const Explanation& e, std::size_t candidate) {
+Change change_by(const Problem& problem, const OutlinesInput& input, const Explanation& e, std::size_t candidate) {
   std::vector<double> without = e.values;
   for (const std::size_t p : problem.candidates()[candidate].parameters) without[p] = problem.parameters()[p].neutral;
   const Observations& o = problem.observations();
@@ -145,7 +145,7 @@ double change_px(const Problem& problem, const OutlinesInput& input, const Expla
       sum[width] += (with[i] - bare[i]) * (with[i] - bare[i]), count[width] += 1;
     }
   }
-  return std::sqrt(std::max(sum[0] / std::max(1.0, count[0]), sum[1] / std::max(1.0, count[1])));
+  return {std::sqrt(sum[0] / std::max(1.0, count[0])), std::sqrt(sum[1] / std::max(1.0, count[1]))};
 }
 
 std::string outlines_remarks(const Problem& problem, const OutlinesInput& input, const Explanation& e) {
@@ -157,8 +157,11 @@ std::string outlines_remarks(const Problem& problem, const OutlinesInput& input,
   for (const std::size_t n : e.named) {
     const Candidate& c = problem.candidates()[n];
     if (c.parameters.empty()) continue;
-    const double rms = change_px(problem, input, e, n);
-    if (rms > 0) text += " " + c.id() + " changes them by " + quantity(rms, "px") + " (root mean square).";
+    const Change change = change_by(problem, input, e, n);
+    if (change.offset_px > 0)
+      text += " " + c.id() + " moves rims by " + quantity(change.offset_px, "px") + " (root mean square).";
+    if (change.width_px > 0)
+      text += " " + c.id() + " widens shadows' edges by " + quantity(change.width_px, "px") + " (root mean square).";
   }
   return text;
 }

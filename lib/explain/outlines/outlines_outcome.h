@@ -6,8 +6,11 @@
 
 namespace gonio::explain {
 
-// Root mean square of what a named candidate changes in the rims' offsets, or in the edges' widths: the larger one, px.
-double change_px(const Problem& problem, const OutlinesInput& input, const Explanation& e, std::size_t candidate);
+// Root mean squares of what a named candidate changes: the rims' offsets, the edges' widths, px.
+struct Change {
+  double offset_px = 0, width_px = 0;
+};
+Change change_by(const Problem& problem, const OutlinesInput& input, const Explanation& e, std::size_t candidate);
 std::string outlines_remarks(const Problem& problem, const OutlinesInput& input, const Explanation& e);
 void upgrade_outlines(const Problem& problem, const OutlineModel& model, const OutlinesInput& input,
                       const Explanation& e, manifest::Document& document);

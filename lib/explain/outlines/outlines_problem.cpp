@@ -15,10 +15,11 @@ namespace gonio::explain {
 namespace {
 
 constexpr double fall = 1e-6;
-constexpr double never = 2;          // a share: by what is left of a usual change over the noise alone
-constexpr double trusted_px = 0.05;  // of masks
-constexpr double far_off = 100;      // times a free number's size: 1 cm, 0.1 rad, a tenth
-constexpr double estimable = 0.02;   // share of a parameter's signature that free and earlier parameters must leave
+constexpr double never = 2;                // a share: by what is left of a usual change over the noise alone
+constexpr double trusted_px = 0.05;        // of masks
+constexpr double trusted_width_px = 0.15;  // of edges in photographs
+constexpr double far_off = 100;            // times a free number's size: 1 cm, 0.1 rad, a tenth
+constexpr double estimable = 0.02;  // share of a parameter's signature that free and earlier parameters must leave
 
 class OutlinesProblem final : public Problem {
  public:
@@ -60,8 +61,9 @@ class OutlinesProblem final : public Problem {
     Testimony t{.by = "the accuracy of masks, " + quantity(trusted_px, "px") + ",",
                 .quantity = "the change of rims",
                 .unit = "px"};
-    t.after = change_px(*this, input_, e, candidate);
-    t.refuted = t.after < trusted_px;
+    const Change change = change_by(*this, input_, e, candidate);
+    t.after = std::max(change.offset_px, change.width_px);
+    t.refuted = change.offset_px < trusted_px && change.width_px < trusted_width_px;
     return t;
   }
 
