@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "alignment/fit.h"
+#include "alignment/question.h"
 #include "camera/camera_model.h"
 #include "manifest/pose.h"
 #include "manifest/sections/forward.h"

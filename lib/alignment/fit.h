@@ -17,45 +17,14 @@
 // (White 1980; Liang & Zeger 1986).
 #pragma once
 #include <Eigen/Core>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "alignment/model_rim.h"
-#include "alignment/observed_rim.h"
+#include "alignment/question.h"
 #include "optim/descent.h"
 
 namespace gonio::alignment {
-
-// What one photograph shows of one rim.
-struct Sighting {
-  RimSubject subject;
-  std::vector<RimPoint> points;  // straightened
-  // Of a place of the picture, straightened: could a rim of this subject not be seen there, because something stands
-  // before it or the picture ends? Empty: it could be everywhere.
-  std::function<bool(Vec2)> unseen;
-};
-struct Contact {  // the lowest vertex of a body touches the ground, as far as that is known
-  std::size_t body = 0;
-  double sigma_m = 1e-4;
-};
-struct Question {
-  std::vector<Sighting> sightings;
-  std::vector<Freedom> freedoms;
-  std::vector<Contact> contacts;
-  Setting stated;  // what priors hold to
-};
-struct Stage {
-  double reach_px = 6;  // farther apart, a point and a rim are not each other's
-  double width_px = 1;  // of the loss; 0: by what is left, sighting by sighting
-  bool both_ways = false;
-  int every = 1;  // of the points, one in so many
-  int most_steps = 30;
-  double small_fall = 1e-6;
-};
-// From anywhere within `start_px` of the rims to the end.
-std::vector<Stage> stages_from(double start_px);
 
 struct SightingFit {
   std::vector<double> offset_px;   // of each point from the model's rim, + outside; NaN: none within reach
@@ -79,8 +48,6 @@ struct Fitted {
 
 // Error(data) where a rim of the start does not exist (behind a camera, above a lamp).
 Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
-// The same without figures or covariance: where it ends.
-Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
 // Costs of settings alone, each point's share bounded: for choosing between starts. Infinite where rims do not exist.
 // The question has to outlive it.
 class RimCost {

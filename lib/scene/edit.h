@@ -26,6 +26,7 @@ struct Edit {
   bool (*fits_surface)(const Surface&) = nullptr;
   void (*surface)(Surface&, const Amounts&) = nullptr;
   void (*instance)(Instance&, std::span<const double>) = nullptr;
+  bool (*fits_instance)(const Instance&) = nullptr;  // those that are meant where none is named; none: all but planes
   void (*view)(View&, const Amounts&) = nullptr;
   bool rays = false;                                      // `view` changes where things are seen
   Rgb (*lamps)(const Amounts&, const Moment&) = nullptr;  // factor on all lamps

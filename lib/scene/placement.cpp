@@ -25,10 +25,11 @@ Instance moved(const Instance& instance, const Mechanism& mechanism, std::span<c
 void apply_mechanism(std::vector<Instance>& instances, const Mechanism& mechanism, const manifest::MechanismUse& use,
                      const std::string& place) {
   if (!applies_to_objects(mechanism)) return;
+  const auto fits = find_edit(mechanism)->fits_instance;
   std::vector<std::string> on = use.on;
   if (on.empty())
     for (const Instance& i : instances)
-      if (!std::holds_alternative<Plane>(i.shape)) on.push_back(i.id);
+      if (fits != nullptr ? fits(i) : !std::holds_alternative<Plane>(i.shape)) on.push_back(i.id);
   for (std::size_t k = 0; k < on.size(); ++k) {
     const auto found =
         std::find_if(instances.begin(), instances.end(), [&](const Instance& i) { return i.id == on[k]; });

@@ -17,7 +17,8 @@ bool applies_to_objects(const mechanism::Mechanism& mechanism);
 // `amounts`: one per parameter of the mechanism, in its order.
 Instance moved(const Instance& instance, const mechanism::Mechanism& mechanism, std::span<const double> amounts);
 
-// What the manifest says; `use.on` empty: all objects but planes. Error(data) at `place` for unknown names and counts.
+// What the manifest says; `use.on` empty: all objects but planes, or those that the mechanism fits. Error(data) at
+// `place` for unknown names and counts.
 void apply_mechanism(std::vector<Instance>& instances, const mechanism::Mechanism& mechanism,
                      const manifest::MechanismUse& use, const std::string& place);
 

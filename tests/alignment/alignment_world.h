@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "alignment/alignment_input.h"
+#include "alignment/fit.h"
 
 namespace gonio::alignment::testing {
 

@@ -83,7 +83,7 @@ TEST(NeutralMechanisms, ChangeNoBitOfThePhotograph) {
       continue;
     }
     EXPECT_EQ(photograph(neutral), plain) << m->id;
-    if (scene::beyond_rendering(*m)) {
+    if (scene::beyond_rendering(*m) || m->id == "geometry.bend") {  // of meshes: a ball stays as it is
       EXPECT_EQ(photograph(other), plain) << m->id;
     } else if (m->id == "light.polarization") {  // matters to light that is carried with its polarization
       EXPECT_EQ(photograph(neutral, true), photograph(document(), true));

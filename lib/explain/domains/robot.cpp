@@ -45,9 +45,7 @@ const Domain& robot() {
            "a constant shift of all corners is the camera's mounting, by which they are held; boards shows it"},
           {"board.print", "left to boards, which has the corners themselves: poses average over it"},
           {"board.shape", "left to boards, which has the corners themselves: poses average over it"},
-          {"lens.",
-           "poses from corners say of the lens what these terms of it say; all others are left to boards, which has "
-           "the corners themselves"},
+          {"lens.", "poses say of it what the terms that are asked say; all others are left to boards"},
           {"camera.rolling-shutter",
            "the arm stands still while a picture is taken; robot.time-offset is the delay of what moves"},
           {"camera.flat-port",

@@ -78,21 +78,21 @@ void move_lamps(const OutlineModel& model, const OutlinesInput& input, const Exp
   }
 }
 
-// A scale that align had left free stands in the manifest as a mechanism, as a named one does: what is in all.
-void write_scale(const OutlinesInput& input, const alignment::Setting& setting, const Explanation& e,
-                 const Candidate& c, manifest::Document& document) {
-  const auto at = std::find(input.in.bodies.begin(), input.in.bodies.end(), c.on[0]);
-  const Vec3 scale = setting.bodies[static_cast<std::size_t>(at - input.in.bodies.begin())].scale;
+// What the manifest says already, and what is named beyond it, as one.
+void write_scale(const OutlineModel& model, const OutlinesInput& input, const alignment::Setting& setting,
+                 const Explanation& e, const Candidate& c, manifest::Document& document) {
+  const auto body = static_cast<std::size_t>(std::find(input.in.bodies.begin(), input.in.bodies.end(), c.on[0]) -
+                                             input.in.bodies.begin());
+  const Vec3 scale = setting.bodies[body].scale, stated = input.in.stated.bodies[body].scale;
+  const std::array<double, 3> all{scale.x, scale.y, scale.z}, before{stated.x, stated.y, stated.z};
   manifest::MechanismUse& use = document.mechanisms[c.id()];
   use.on = c.on;
-  const std::array<double, 3> all{scale.x, scale.y, scale.z};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::string& name = c.mechanism->parameters[k].name;
     use.parameters[name] = 1 - all[k];
     double sigma = 0;
     for (const std::size_t p : c.parameters)
-      if (e.values.size() > p && input.views.size() > 0 && c.parameters[k < c.parameters.size() ? k : 0] == p)
-        sigma = e.sigma[p];
+      if (model.roles[p].index == k) sigma = before[k] * e.sigma[p];
     use.sigma[name] = {sigma};
   }
 }
@@ -178,7 +178,7 @@ void upgrade_outlines(const Problem& problem, const OutlineModel& model, const O
     if (r.part != Part::freedom)
       write_named(problem, model, e, c, document);
     else if (model.freedoms[r.freedom].block == Block::body_scale && !model.freedoms[r.freedom].uniform)
-      write_scale(input, setting, e, c, document);
+      write_scale(model, input, setting, e, c, document);
     else if (model.freedoms[r.freedom].block == Block::body_scale)
       write_named(problem, model, e, c, document);
   }

@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::uint32_t squares = 128;  // a side: of 1 m and 1/m they leave the bent plane by 8 um
 
+bool is_plane(const Instance& instance) {
+  return std::holds_alternative<Plane>(instance.shape);
+}
+
 void bend_plane(Instance& instance, std::span<const double> a) {
   const auto* plane = std::get_if<Plane>(&instance.shape);
   if (plane == nullptr) return;
@@ -38,7 +42,7 @@ void bend_plane(Instance& instance, std::span<const double> a) {
 }  // namespace
 
 const Edit& ground_not_flat() {
-  static const Edit edit{.mechanism = mechanism::ground_not_flat, .instance = bend_plane};
+  static const Edit edit{.mechanism = mechanism::ground_not_flat, .instance = bend_plane, .fits_instance = is_plane};
   return edit;
 }
 
