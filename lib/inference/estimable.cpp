@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "inference/problem.h"
+
 namespace gonio::inference {
 namespace {
 
@@ -46,6 +48,16 @@ std::vector<std::size_t> Estimable::kept(const std::vector<Column>& own, double 
   for (std::size_t p = 0; p < own.size(); ++p)
     if (join(own[p], least_share, usual.empty() ? 0 : usual[p], basis)) places.push_back(p);
   return places;
+}
+
+Estimable::Column whitened_slopes(const Problem& problem, std::size_t parameter, std::span<const double> values) {
+  const Observations& o = problem.observations();
+  Estimable::Column column(o.rows());
+  const std::size_t one[] = {parameter};
+  for (std::size_t g = 0; g < o.groups(); ++g)
+    problem.jacobian(values, g, one, std::span(column).subspan(o.first[g], o.first[g + 1] - o.first[g]));
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] /= o.sigma[i];
+  return column;
 }
 
 }  // namespace gonio::inference

@@ -1,6 +1,7 @@
 // Which numbers of a hypothesis these recordings can tell at all, before any of them is fitted.
 #pragma once
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace gonio::inference {
@@ -20,5 +21,9 @@ class Estimable {
  private:
   std::vector<Column> basis_;  // orthonormal
 };
+
+class Problem;
+// A parameter's column at `values`, one per parameter of the problem.
+Estimable::Column whitened_slopes(const Problem& problem, std::size_t parameter, std::span<const double> values);
 
 }  // namespace gonio::inference

@@ -143,16 +143,6 @@ class CloudsProblem final : public Problem {
     return length > 0 ? dot(row.slope, way) / length : 0;
   }
 
-  Estimable::Column column_of(std::size_t parameter, const std::vector<double>& values) const {
-    Estimable::Column column(observations_.rows());
-    const std::size_t one[] = {parameter};
-    for (std::size_t g = 0; g < observations_.groups(); ++g)
-      jacobian(values, g, one,
-               std::span(column).subspan(observations_.first[g], observations_.first[g + 1] - observations_.first[g]));
-    for (std::size_t i = 0; i < column.size(); ++i) column[i] /= observations_.sigma[i];
-    return column;
-  }
-
   // A shape along which its own points slide: a groove along its edge, a turned part about its axis.
   void hold_what_slides() {
     const std::vector<double> values = neutral_values();
@@ -164,7 +154,7 @@ class CloudsProblem final : public Problem {
         kept.push_back(p);
         continue;
       }
-      shapes.push_back(p), columns.push_back(column_of(p, values)), usual.push_back(parameters_[p].size);
+      shapes.push_back(p), columns.push_back(whitened_slopes(*this, p, values)), usual.push_back(parameters_[p].size);
     }
     for (const std::size_t k : Estimable({}).kept(columns, never, usual)) kept.push_back(shapes[k]);
     std::ranges::sort(kept);
@@ -182,7 +172,7 @@ class CloudsProblem final : public Problem {
     const std::vector<double> values = neutral_values();
     const auto columns_of = [&](const std::vector<std::size_t>& parameters) {
       std::vector<Estimable::Column> columns;
-      for (const std::size_t p : parameters) columns.push_back(column_of(p, values));
+      for (const std::size_t p : parameters) columns.push_back(whitened_slopes(*this, p, values));
       return columns;
     };
     const Estimable beside(columns_of(base_));

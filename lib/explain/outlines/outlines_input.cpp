@@ -14,6 +14,7 @@
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
 #include "mechanism/mechanism.h"
+#include "stats/intervals.h"
 
 namespace gonio::mechanism {
 const Mechanism& light_finite_size();
@@ -78,13 +79,6 @@ double radius_of(const Document& d, const std::string& lamp) {
   return value.size() == 1 ? value[0] : place < value.size() ? value[place] : radius;
 }
 
-double median(std::vector<double> v) {
-  if (v.empty()) return 0;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 // By the differences of neighbours a few pixels apart, which no smooth effect reaches. Errors of masks are alike over
 // longer stretches: what the nearest fit leaves is asked beside it.
 double noise_of(const std::vector<OutlineRow>& rows, bool width) {
@@ -96,7 +90,7 @@ double noise_of(const std::vector<OutlineRow>& rows, bool width) {
     before = &r;
   }
   if (steps.size() < 8) return 0.2;
-  return 1.4826 * median(std::move(steps)) / std::sqrt(2.0);
+  return stats::sigma_of_median * stats::median(steps) / std::sqrt(2.0);
 }
 
 std::vector<double> sizes_of(std::vector<double> values) {
@@ -198,7 +192,8 @@ class RimReader {
       row.width = true, row.lever = levers[i], row.observed = in_.rims[k].spread_px[i];
       view.rows.push_back(row);
     }
-    const double offset = std::max({least_sigma_px, noise_of(view.rows, false), 1.4826 * median(sizes_of(left))}),
+    const double offset = std::max({least_sigma_px, noise_of(view.rows, false),
+                                    stats::sigma_of_median * stats::median(sizes_of(left))}),
                  width = noise_of(view.rows, true);
     const double alike = std::sqrt(alike_rows(left));
     for (OutlineRow& r : view.rows)

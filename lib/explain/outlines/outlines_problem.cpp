@@ -124,22 +124,13 @@ class OutlinesProblem final : public Problem {
     }
   }
 
-  Estimable::Column column_of(std::size_t parameter, const std::vector<double>& values) const {
-    Estimable::Column column(observations_.rows());
-    const std::size_t one[] = {parameter};
-    for (std::size_t g = 0; g < observations_.groups(); ++g)
-      jacobian(values, g, one,
-               std::span(column).subspan(observations_.first[g], observations_.first[g + 1] - observations_.first[g]));
-    for (std::size_t i = 0; i < column.size(); ++i) column[i] /= observations_.sigma[i];
-    return column;
-  }
   // What no rim holds stays where align left it, and of what is asked those numbers remain that these rims can tell.
   void keep_estimable() {
     std::vector<double> values, usual;
     std::vector<Estimable::Column> columns;
     for (const Parameter& p : parameters_) values.push_back(p.neutral);
     for (const std::size_t p : declared_.base) {
-      columns.push_back(column_of(p, values)), usual.push_back(parameters_[p].size * far_off);
+      columns.push_back(whitened_slopes(*this, p, values)), usual.push_back(parameters_[p].size * far_off);
     }
     std::vector<Estimable::Column> held;
     for (const std::size_t k : Estimable({}).kept(columns, never, usual))
@@ -157,7 +148,7 @@ class OutlinesProblem final : public Problem {
       for (const std::size_t p : c.parameters) {
         std::vector<double> begun = values;  // a radius has no slope at nothing
         begun[p] = parameters_[p].start;
-        own.push_back(column_of(p, begun)), sizes.push_back(parameters_[p].size / of_typical);
+        own.push_back(whitened_slopes(*this, p, begun)), sizes.push_back(parameters_[p].size / of_typical);
       }
       std::vector<std::size_t> kept;
       for (const std::size_t k : beside.kept(own, estimable, sizes)) kept.push_back(c.parameters[k]);
