@@ -16,7 +16,6 @@
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
-#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "photograph/linear_picture.h"
@@ -49,18 +48,6 @@ Rigid<frame::World, frame::Object> pose_of(const manifest::Object& object) {
                                   : Rigid<frame::World, frame::Object>{};
 }
 
-// What the manifest has switched on for this object.
-std::optional<scene::Amounts> amounts_on(const Document& d, const mechanism::Mechanism& mechanism,
-                                         const std::string& object) {
-  const auto use = d.mechanisms.find(mechanism.id);
-  if (use == d.mechanisms.end()) return {};
-  const std::vector<std::string>& on = use->second.on;
-  const auto place = std::find(on.begin(), on.end(), object);
-  if (!on.empty() && place == on.end()) return {};
-  return scene::amounts_of(mechanism, use->second, static_cast<std::size_t>(place - on.begin()),
-                           std::max<std::size_t>(1, on.size()), manifest::place(d, "/mechanisms/" + mechanism.id));
-}
-
 void read_body(const Document& d, const std::string& id, AlignmentInput& in, const NoteFile& note) {
   const std::size_t i = object_index(d, id);
   const manifest::Mesh& mesh = d.meshes.at(d.objects[i].mesh);
@@ -69,7 +56,7 @@ void read_body(const Document& d, const std::string& id, AlignmentInput& in, con
                 "spheres and planes have no rims to align");
   io::TriangleMesh raw = scene::deformed_mesh(d, d.objects[i].mesh, scene::deformation_of(d, id, ""), {}, note);
   in.shapes.emplace_back(raw.positions_m, raw.triangles);
-  if (const auto curl = amounts_on(d, mechanism::geometry_bend(), id)) {
+  if (const auto curl = scene::amounts_on(d, mechanism::geometry_bend(), id)) {
     const Vec3 middle = in.shapes.back().centre_m();
     for (Vec3& p : raw.positions_m) p = equation::bent(p, middle, *curl);
     in.shapes.back() = Shape(raw.positions_m, raw.triangles);
@@ -77,7 +64,7 @@ void read_body(const Document& d, const std::string& id, AlignmentInput& in, con
   if (in.shapes.back().triangles() == 0)
     throw Error(Exit::data, manifest::place(d, "/meshes/" + d.objects[i].mesh), "has no triangle with an area");
   Vec3 scale{1, 1, 1};
-  if (const auto shrink = amounts_on(d, mechanism::geometry_shrinkage(), id))
+  if (const auto shrink = scene::amounts_on(d, mechanism::geometry_shrinkage(), id))
     scale = scale - Vec3{(*shrink)[0], (*shrink)[1], (*shrink)[2]};
   in.stated.bodies.push_back({&in.shapes.back(), pose_of(d.objects[i]), scale});
   in.bodies.push_back(id);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
 
 namespace gonio::scene {
@@ -35,6 +36,17 @@ Amounts amounts_of(const Mechanism& mechanism, const manifest::MechanismUse& use
     amounts.push_back(value[value.size() == 1 ? 0 : index]);
   }
   return amounts;
+}
+
+std::optional<Amounts> amounts_on(const manifest::Document& document, const Mechanism& mechanism,
+                                  const std::string& name) {
+  const auto use = document.mechanisms.find(mechanism.id);
+  if (use == document.mechanisms.end()) return {};
+  const std::vector<std::string>& on = use->second.on;
+  const auto place = std::find(on.begin(), on.end(), name);
+  if (!on.empty() && place == on.end()) return {};
+  return amounts_of(mechanism, use->second, static_cast<std::size_t>(place - on.begin()),
+                    std::max<std::size_t>(1, on.size()), manifest::place(document, "/mechanisms/" + mechanism.id));
 }
 
 bool neutral(const Mechanism& mechanism, std::span<const double> amounts) {

@@ -68,6 +68,7 @@ double OutlineModel::offset_px(const Moved& moved, const OutlineView& view, cons
 }
 
 void OutlineModel::predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const {
+  double mask_px = 0;
   Moved m{setting(values), {}, {}, {}, input_.radii_m, input_.blur_px};
   m.bend.resize(m.setting.bodies.size()), m.offset_m.resize(m.setting.bodies.size(), 0.0);
   for (std::size_t p = 0; p < roles.size(); ++p) {
@@ -77,10 +78,8 @@ void OutlineModel::predict(std::span<const double> values, std::size_t group, st
     if (r.part == Part::ground) m.ground[r.index] = values[p];
     if (r.part == Part::radius) m.radius_m[r.which] = values[p];
     if (r.part == Part::blur) m.blur_px[r.which] = values[p];
+    if (r.part == Part::mask && r.which == group) mask_px = values[p];
   }
-  double mask_px = 0;
-  for (std::size_t p = 0; p < roles.size(); ++p)
-    if (roles[p].part == Part::mask && roles[p].which == group) mask_px = values[p];
   const OutlineView& view = input_.views[group];
   const double blur = m.blur_px[m.setting.stations[view.subject.station].lens];
   for (std::size_t i = 0; i < view.rows.size(); ++i) {

@@ -12,13 +12,16 @@
 #include "manifest/document.h"
 #include "manifest/sections/alignment.h"
 #include "manifest/sections/light.h"
-#include "manifest/sections/mechanism_use.h"
 #include "mechanism/mechanism.h"
+#include "scene/amounts.h"
 #include "stats/intervals.h"
 
 namespace gonio::mechanism {
+const Mechanism& geometry_offset();
+const Mechanism& geometry_scale();
+const Mechanism& ground_not_flat();
 const Mechanism& light_finite_size();
-}
+}  // namespace gonio::mechanism
 
 namespace gonio::explain {
 namespace {
@@ -66,17 +69,10 @@ alignment::InputWish wish_of(const Document& d) {
 double radius_of(const Document& d, const std::string& lamp) {
   const manifest::Light& light = d.lights.at(lamp);
   const auto own = light.parameters.find("radius_m");
-  double radius =
+  const double radius =
       light.model == "sphere" && own != light.parameters.end() && !own->second.value.empty() ? own->second.value[0] : 0;
-  const auto use = d.mechanisms.find(mechanism::light_finite_size().id);
-  if (use == d.mechanisms.end()) return radius;
-  const auto& on = use->second.on;
-  const auto at = std::find(on.begin(), on.end(), lamp);
-  const auto amount = use->second.parameters.find("radius_m");
-  if ((!on.empty() && at == on.end()) || amount == use->second.parameters.end()) return radius;
-  const std::vector<double>& value = amount->second.value;
-  const auto place = static_cast<std::size_t>(at - on.begin());
-  return value.size() == 1 ? value[0] : place < value.size() ? value[place] : radius;
+  const auto amounts = scene::amounts_on(d, mechanism::light_finite_size(), lamp);
+  return amounts ? amounts->front() : radius;
 }
 
 // By the differences of neighbours a few pixels apart, which no smooth effect reaches. Errors of masks are alike over
@@ -269,6 +265,12 @@ bool has_outlines(const Document& document) {
 }
 
 void outlines_within_reach(const Document& document) {
+  // The aligned model does not have these: what they do would be named once more.
+  for (const mechanism::Mechanism* m :
+       {&mechanism::geometry_offset(), &mechanism::geometry_scale(), &mechanism::ground_not_flat()})
+    if (document.mechanisms.contains(m->id))
+      throw Error(Exit::data, manifest::place(document, "/mechanisms/" + m->id),
+                  "is switched on, and rims of models are made without it", "ask rims without it, or pictures with it");
   if (document.outlines.size() >= fewest_rims) return;
   throw Error(
       Exit::data, manifest::place(document, "/outlines"),

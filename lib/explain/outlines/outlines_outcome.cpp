@@ -41,6 +41,14 @@ double covariance_of(const Explanation& e, std::optional<std::size_t> a, std::op
   return a && b ? e.covariance[*a * e.active.size() + *b] : 0;
 }
 
+// Is one growth along all axes named for this body?
+bool grown(const OutlineModel& model, const Explanation& e, std::size_t body) {
+  return std::any_of(e.active.begin(), e.active.end(), [&](std::size_t p) {
+    const OutlineRole& r = model.roles[p];
+    return r.part == Part::freedom && r.form == OutlineRole::Form::grows && r.which == body;
+  });
+}
+
 void move_objects(const OutlineModel& model, const OutlinesInput& input, const Explanation& e,
                   const alignment::Setting& setting, manifest::Document& document) {
   for (manifest::Object& object : document.objects) {
@@ -58,6 +66,11 @@ void move_objects(const OutlineModel& model, const OutlinesInput& input, const E
     object.world_from_object.emplace();
     object.world_from_object->rotation = body.world_from_object.rotation;
     object.world_from_object->translation_m = body.world_from_object.translation_m;
+    if (grown(model, e, b)) {  // geometry.scale is about the object's origin, and the fit's about the middle of its box
+      const Vec3 c = body.shape->centre_m(), before = input.in.stated.bodies[b].scale;
+      const double factor = body.scale.x / before.x;
+      object.world_from_object->translation_m += body.world_from_object.rotate(c * (1 - factor));
+    }
     object.world_from_object->sigma = manifest::sigma_at(std::span<const double, 36>(covariance),
                                                          body.world_from_object.translation_m - body.centre_m());
   }

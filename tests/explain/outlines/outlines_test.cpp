@@ -11,9 +11,12 @@
 #include "data.h"
 #include "explain/outlines/believed_rims.h"
 #include "explain/outlines/outline_parameters.h"
+#include "explain/outlines/outlines_outcome.h"
 #include "explain/outlines/outlines_problem.h"
 #include "inference/explanation.h"
 #include "manifest/document.h"
+#include "manifest/sections/light.h"
+#include "manifest/sections/object.h"
 #include "process.h"
 
 namespace gonio::explain {
@@ -118,6 +121,30 @@ TEST(Outlines, ALampThatStandsElsewhereIsNamed) {
   const Explanation e = explained(*problem);
   EXPECT_THAT(named(*problem, e), ::testing::ElementsAre("light.position"));
   EXPECT_NEAR(value_of(*problem, e, "lamp-1/shift_x_m"), -0.012, 0.004);
+}
+
+// A scene grows about the object's origin, the fit about the middle of its box: what is written is the same body.
+TEST(Outlines, AGrowthIsWrittenAsScenesApplyIt) {
+  World world = alignment::testing::world_of(seen);
+  const OutlinesInput input = believed(world, [](Setting&) {});
+  OutlineModel model(input);
+  const OutlineParameters declared = outline_parameters(input, model);
+  const auto problem = outlines_problem(input);
+  Explanation e;
+  e.values.assign(declared.parameters.size(), 0.0), e.sigma.assign(e.values.size(), 0.0);
+  for (std::size_t n = 0; n < problem->candidates().size(); ++n)
+    if (problem->candidates()[n].id() == "geometry.scale") e.named = {n};
+  ASSERT_EQ(e.named.size(), 1U);
+  const std::size_t growth = problem->candidates()[e.named[0]].parameters[0];
+  e.values[growth] = 0.03, e.active = declared.base, e.active.push_back(growth);
+  e.covariance.assign(e.active.size() * e.active.size(), 0.0);
+  manifest::Document document;
+  document.objects.emplace_back().id = "solid";
+  for (const std::string& lamp : input.in.lamps) document.lights[lamp];
+  upgrade_outlines(*problem, model, input, e, document);
+  const alignment::Body fitted = model.setting(e.values).bodies[0];
+  for (const Vec3 x : {Vec3{0.01, -0.02, 0.03}, Vec3{-0.04, 0.01, 0}})
+    EXPECT_LT(norm(*document.objects[0].world_from_object * (x * 1.03) - fitted.place_m(x)), 1e-12);
 }
 
 // Pictures by another renderer, whose lamps were spheres of 35 mm: masks, poses and lamps as align finds them.
