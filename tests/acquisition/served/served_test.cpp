@@ -1,10 +1,14 @@
 // The simulated laboratory behind its network, as a user runs it: the program of GONIO_BIN serves, another call of it
 // acquires.
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +16,7 @@
 #include <thread>
 
 #include "acquisition/desk/gige_camera.h"
+#include "acquisition/desk/gige_packets.h"
 #include "acquisition/desk/served_laboratory.h"
 #include "acquisition/desk/specimen_laboratory.h"
 #include "acquisition/desk/true_laboratory.h"
@@ -229,6 +234,56 @@ TEST(GigeCamera, EveryFormatArrivesAsItWasSent) {
       for (int i = 0; i < 660; ++i) ASSERT_EQ(frame.samples[i], code(i, parsed.bits)) << format.name << " " << i;
     }
   }
+}
+
+// The stream of another camera to somebody else on this machine, who is not there: every packet passes the interface.
+class OtherStream {
+ public:
+  OtherStream() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)), sender_([this] { send(); }) {}
+  ~OtherStream() {
+    ending_ = true;
+    sender_.join();
+    ::close(socket_);
+  }
+
+ private:
+  void send() {
+    sockaddr_in nobody{};
+    nobody.sin_family = AF_INET;
+    nobody.sin_port = htons(9);
+    nobody.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    for (std::uint64_t id = 1; !ending_; id = id % 50 + 1)
+      for (const auto& packet : desk::packets_of({id, id, 0x01100005, 33, 10, std::string(660, 'x')}, {}, 1400))
+        ::sendto(socket_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&nobody), sizeof nobody);
+  }
+  int socket_;
+  std::atomic<bool> ending_{false};
+  std::thread sender_;
+};
+
+TEST(GigeCamera, FramesOfOtherCamerasThatPassAreNotTaken) {
+  desk::Faults faults;
+  desk::GigeCamera served(
+      {.name = "c", .width_px = 33, .height_px = 20, .format = *parse_pixel_format("BayerRG12")},
+      [](const Shot&, const PixelFormat&) {
+        RawFrame frame;
+        frame.width_px = 33;
+        frame.height_px = 20;
+        frame.samples.assign(660, 7);
+        return frame;
+      },
+      faults);
+  const OtherStream other;
+  int whole = 0;  // a packet may be lost on a busy machine
+  for (int i = 0; i < 15; ++i) {
+    const auto camera = open_camera("genicam://" + served.address() + "?timeout=2s&pixel_format=BayerRG12p", "here");
+    const RawFrame frame = camera->take({0.001, {}});
+    whole += frame.incomplete_packets == 0;
+    if (frame.incomplete_packets == 0) {
+      EXPECT_EQ(frame.samples, std::vector<std::uint16_t>(660, 7));
+    }
+  }
+  EXPECT_GE(whole, 12);
 }
 
 TEST(GigeCamera, WhatIsWrongWithAFrameShows) {

@@ -157,7 +157,11 @@ class GenicamCamera : public CameraDevice, AravisCamera {
     chunks_.reset(arv_camera_create_chunk_parser(camera_.get()));
   }
 
+  // As root, aravis reads a raw socket, which hears all that passes from its making until its filter stands: the frames
+  // of other cameras were taken for this one's. Its port of UDP hears nothing else, and is what other users get anyway.
   void start() {
+    if (ARV_IS_GV_DEVICE(device()))
+      arv_gv_device_set_stream_options(ARV_GV_DEVICE(device()), ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
     stream_.reset(ask(arv_camera_create_stream, nullptr, nullptr));
     if (!stream_) throw failure("opens no stream", "is its network interface up?");
     const auto payload = ask(arv_camera_get_payload);
