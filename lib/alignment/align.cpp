@@ -38,8 +38,22 @@ bool is_free(const Question& q, Block block, std::size_t which) {
                      [&](const Freedom& f) { return f.block == block && f.which == which; });
 }
 
+// A fit and the way to it.
+struct End {
+  Fitted fitted;
+  Tried tried;
+};
+
+End fitted_from(const Setting& setting, const Question& q, const AlignWish& wish, double from_px, Tried tried) {
+  FitPath path{.reach_px = std::max(60.0, wish.reach_px), .rms_px = std::move(tried.rms_px)};
+  End end{fit_rims(setting, q, stages_from(from_px), wish.record ? &path : nullptr), std::move(tried)};
+  end.tried.rms_px = std::move(path.rms_px), end.tried.explained = end.fitted.explained;
+  return end;
+}
+
 // All of it, from a start whose body is nearly right: lamps that are not, are searched.
-Fitted finish(const Setting& start, const Question& q, const AlignWish& wish, bool search_lamps, double from_px) {
+End finish(const Setting& start, const Question& q, const AlignWish& wish, bool search_lamps, double from_px,
+           Tried tried) {
   Setting setting = start;
   if (search_lamps)
     for (const std::size_t lamp : lamps_of(q))
@@ -47,11 +61,11 @@ Fitted finish(const Setting& start, const Question& q, const AlignWish& wish, bo
         const auto places = search_lamp(setting, q, lamp, wish.search);
         if (!places.empty()) setting = places.front().setting;
       }
-  return fit_rims(setting, q, stages_from(from_px));
+  return fitted_from(setting, q, wish, from_px, std::move(tried));
 }
 
 // Nothing else fits better, or: this does.
-std::optional<Setting> find_rivals(const Question& q, std::size_t body, const std::vector<Fitted>& others, Aligned& a) {
+std::optional<Setting> find_rivals(const Question& q, std::size_t body, const std::vector<End>& others, Aligned& a) {
   const Fitted& f = a.fitted;
   a.rivals.clear(), a.symmetries.clear();
   const RimCost cost(q);
@@ -73,8 +87,8 @@ std::optional<Setting> find_rivals(const Question& q, std::size_t body, const st
     if (worse < 9) a.rivals.push_back({other.setting, worse, other.rms_px, other.explained});
     return worse;
   };
-  for (const Fitted& other : others)
-    if (merit(other) > 0.7 * merit(f)) consider(other.setting);
+  for (const End& other : others)
+    if (merit(other.fitted) > 0.7 * merit(f)) consider(other.fitted.setting);
   std::vector<std::pair<Vec3, std::vector<double>>> about;  // axes, and by how much a turn looks alike
   for (const Turned& turned : turned_alike(f, q, body)) {
     if (!(consider(turned.setting) < 9)) continue;
@@ -109,8 +123,9 @@ bool mirrored(const Setting& stated, const Question& q, std::size_t body, const 
   Setting other = stated;
   other.bodies[body].shape = &reflected;
   AlignWish quick = wish;
+  quick.record = false;
   for (const Start& start : search_body(other, q, body, quick.search))
-    if (believed(finish(start.setting, q, wish, true, 12), wish)) return true;
+    if (believed(finish(start.setting, q, quick, true, 12, {}).fitted, wish)) return true;
   return false;
 }
 
@@ -136,58 +151,101 @@ std::string word_of(Verdict verdict) {
   }
 }
 
+namespace {
+
+void sort_best_first(std::vector<End>& ends) {
+  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return merit(a.fitted) > merit(b.fitted); });
+}
+
+// From where the body is stated; where that leads nowhere, lamps are searched as well. None: there is no rim.
+std::vector<End> ends_of_stated(const Setting& stated, const Question& q, const AlignWish& wish) {
+  std::vector<End> ends;
+  try {
+    ends.push_back(finish(stated, q, wish, false, wish.reach_px, {.from = "as stated"}));
+    if (!believed(ends.front().fitted, wish) && !wish.lamps_known) {
+      Tried on = ends.front().tried;
+      on.from = "as stated, then lamps searched";
+      ends.push_back(finish(ends.front().fitted.setting, q, wish, true, wish.reach_px, std::move(on)));
+    }
+  } catch (const Error&) {
+    if (wish.from == AlignWish::From::stated) throw;
+  }
+  sort_best_first(ends);
+  return ends;
+}
+
+// Adds ends of a search from nothing; `left`: starts that were left before all of it was fitted.
+void add_searched(const Setting& stated, const Question& q, std::size_t body, const AlignWish& wish,
+                  std::vector<End>& ends, std::vector<Tried>& left) {
+  SearchWish search = wish.search;
+  search.record = wish.record;
+  const std::vector<Start> starts = search_body(stated, q, body, search);
+  bool enough = false;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const auto& paths = starts[i].paths;
+    Tried tried{.from = format("searched, %zu", i + 1), .rms_px = paths.empty() ? std::vector<double>{} : paths[0]};
+    for (std::size_t k = 1; k < paths.size(); ++k)
+      left.push_back({.fate = Tried::Fate::same_end, .from = tried.from + ", by another way", .rms_px = paths[k]});
+    enough = enough || i >= 4 || (i > 0 && starts[i].cost > 3 * starts[0].cost && believed(ends.front().fitted, wish));
+    if (enough) {
+      tried.fate = Tried::Fate::left;
+      if (wish.record) left.push_back(std::move(tried));
+      continue;
+    }
+    ends.push_back(finish(starts[i].setting, q, wish, !wish.lamps_known, 12, std::move(tried)));
+    sort_best_first(ends);
+  }
+}
+
+// What is left to say of a fit that is believed.
+void judge(const Question& question, std::size_t body, const AlignWish& wish, const std::vector<End>& others,
+           Aligned& a) {
+  // A body that is nearly alike from several sides has many ends, of which the search need not have met the best.
+  for (int round = 0; round < 3; ++round) {
+    const auto next = find_rivals(question, body, others, a);
+    if (!next) break;
+    End better = fitted_from(*next, question, wish, 8, {.from = "beside the one before"});
+    a.fitted = std::move(better.fitted);
+    a.tried.push_back(std::move(better.tried));
+  }
+  judge_open(question, body, wish, a);
+}
+
+}  // namespace
+
+void judge_open(const Question& question, std::size_t body, const AlignWish& wish, Aligned& a) {
+  a.open = open_directions(a.fitted, question, body, wish.open_share);
+  a.verdict = a.rivals.empty() && a.open.empty() ? Verdict::found : Verdict::ambiguous;
+  a.why.clear();
+  if (!a.rivals.empty())
+    a.why = a.symmetries.empty() ? format("%zu other poses fit as well", a.rivals.size())
+                                 : a.symmetries.front() + " looks alike";
+  else if (!a.open.empty())
+    a.why = "no rim holds " + a.open.front();
+}
+
 Aligned align(const Setting& stated, const Question& question, std::size_t body, const AlignWish& wish) {
-  std::vector<Fitted> tried;
-  const auto better = [](const Fitted& a, const Fitted& b) { return merit(a) > merit(b); };
-  if (wish.from != AlignWish::From::nothing) {
-    try {
-      tried.push_back(finish(stated, question, wish, false, wish.reach_px));
-      if (!believed(tried.front(), wish) && !wish.lamps_known)
-        tried.push_back(finish(tried.front().setting, question, wish, true, wish.reach_px));
-    } catch (const Error&) {
-      if (wish.from == AlignWish::From::stated) throw;
-    }
-    std::sort(tried.begin(), tried.end(), better);
-  }
-  const bool search = wish.from == AlignWish::From::nothing ||
-                      (wish.from == AlignWish::From::either && (tried.empty() || !believed(tried.front(), wish)));
-  if (search) {
-    const std::vector<Start> starts = search_body(stated, question, body, wish.search);
-    for (std::size_t i = 0; i < std::min<std::size_t>(starts.size(), 4); ++i) {
-      if (i > 0 && starts[i].cost > 3 * starts[0].cost && believed(tried.front(), wish)) break;
-      tried.push_back(finish(starts[i].setting, question, wish, !wish.lamps_known, 12));
-      std::sort(tried.begin(), tried.end(), better);
-    }
-  }
-  if (tried.empty())
-    throw Error(Exit::data, "start", "leads nowhere: the object is behind the camera or above its lamp");
+  std::vector<End> ends;
   Aligned a;
-  a.fitted = std::move(tried.front());
-  tried.erase(tried.begin());
-  if (!believed(a.fitted, wish)) {
+  if (wish.from != AlignWish::From::nothing) ends = ends_of_stated(stated, question, wish);
+  if (wish.from == AlignWish::From::nothing ||
+      (wish.from == AlignWish::From::either && (ends.empty() || !believed(ends.front().fitted, wish))))
+    add_searched(stated, question, body, wish, ends, a.tried);
+  if (ends.empty())
+    throw Error(Exit::data, "start", "leads nowhere: the object is behind the camera or above its lamp");
+  a.fitted = std::move(ends.front().fitted);
+  for (std::size_t i = ends.size(); i-- > 0;) a.tried.push_back(std::move(ends[i].tried));
+  ends.erase(ends.begin());
+  if (believed(a.fitted, wish)) {
+    judge(question, body, wish, ends, a);
+  } else {
     a.why = why_lost(a.fitted, wish);
     if (mirrored(stated, question, body, wish)) {
       a.verdict = Verdict::mirrored;
       a.why = "the mesh's mirror image fits, and the mesh does not";
     }
-    return a;
   }
-  a.verdict = Verdict::found;
-  // A body that is nearly alike from several sides has many ends, of which the search need not have met the best.
-  for (int round = 0; round < 3; ++round) {
-    const auto next = find_rivals(question, body, tried, a);
-    if (!next) break;
-    a.fitted = fit_rims(*next, question, stages_from(8));
-  }
-  a.open = open_directions(a.fitted, question, body, wish.open_share);
-  if (!a.rivals.empty()) {
-    a.verdict = Verdict::ambiguous;
-    a.why = a.symmetries.empty() ? format("%zu other poses fit as well", a.rivals.size())
-                                 : a.symmetries.front() + " looks alike";
-  } else if (!a.open.empty()) {
-    a.verdict = Verdict::ambiguous;
-    a.why = "no rim holds " + a.open.front();
-  }
+  a.tried.back().fate = Tried::Fate::taken;
   return a;
 }
 

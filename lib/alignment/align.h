@@ -24,6 +24,7 @@ struct AlignWish {
   // A direction is open where it is known no better than to this share of the body's radius.
   double open_share = 0.03;
   SearchWish search{};
+  bool record = false;  // fill Aligned::tried
 };
 
 enum class Verdict { found, ambiguous, mirrored, lost };
@@ -34,6 +35,12 @@ struct Rival {
   double worse = 0;  // its sum of squares over the best one's, in independent points of one standard deviation
   double rms_px = 0, explained = 0;
 };
+struct Tried {                                                              // one start, and where it led
+  enum class Fate { taken, dropped, same_end, left } fate = Fate::dropped;  // left: before shadows were looked at
+  std::string from;
+  std::vector<double> rms_px{};  // off before each step, and at the end (FitPath)
+  double explained = 0;          // of the model's rims, where all of it was fitted
+};
 struct Aligned {
   Fitted fitted;
   Verdict verdict = Verdict::lost;
@@ -41,9 +48,13 @@ struct Aligned {
   std::vector<Rival> rivals;            // that fit as well
   std::vector<std::string> open;        // directions that no rim holds
   std::vector<std::string> symmetries;  // of rivals that are turns of the found pose about one of the mesh's axes
+  std::vector<Tried> tried;             // the one that was taken last
+  bool stands() const { return verdict == Verdict::found || verdict == Verdict::ambiguous; }  // and may be moved there
 };
 
 // For one body, number `body`; others in the setting stay as they are, or move along where they are free.
 Aligned align(const Setting& stated, const Question& question, std::size_t body, const AlignWish& wish);
+// Anew, by the fit as it is now: directions of the body that no rim holds, and whether they make it ambiguous.
+void judge_open(const Question& question, std::size_t body, const AlignWish& wish, Aligned& aligned);
 
 }  // namespace gonio::alignment

@@ -22,6 +22,10 @@ void say(const AlignmentInput& in, const std::vector<Aligned>& all) {
         in.bodies[b] + ": " + word_of(all[b].verdict) + (all[b].why.empty() ? "" : ": " + all[b].why) +
             format("; rims %.2f px off (rms), %.1f %% of the model's rims seen", f.rms_px, 100 * f.explained));
   }
+  const auto stands = std::find_if(all.begin(), all.end(), [](const Aligned& a) { return a.stands(); });
+  if (stands == all.end()) return;
+  for (const std::size_t l : loose_lamps(in, stands->fitted))
+    log(LogLevel::warning, "lamp " + in.lamps[l] + ": no rim holds its place; it stays where it is stated");
 }
 
 }  // namespace
@@ -33,7 +37,9 @@ void check_alignment(const manifest::Document& document, const AlignmentRequest&
 Verdict align_document(manifest::Document& document, const AlignmentRequest& request) {
   find_masks(document, request.masks, request.output_path, request.note_input);
   const AlignmentInput in = read_alignment(document, request.input, request.note_input);
-  const std::vector<Aligned> all = align_bodies(in, request.wish);
+  AlignWish wish = request.wish;
+  wish.record = !request.page.empty();
+  const std::vector<Aligned> all = align_bodies(in, wish);
   say(in, all);
   Verdict worst = Verdict::found;
   document.alignments.clear();
@@ -43,20 +49,21 @@ Verdict align_document(manifest::Document& document, const AlignmentRequest& req
   }
   // A body that was found, or is one of several alike, moves; one that is lost stays where it was stated.
   for (std::size_t b = 0; b < all.size(); ++b)
-    if (all[b].verdict == Verdict::found || all[b].verdict == Verdict::ambiguous)
-      move_document(document, in, b, all[b]);
+    if (all[b].stands()) move_document(document, in, b, all[b]);
   const Aligned& first = all.front();
   for (std::size_t k = 0; k < in.rims.size(); ++k) {
     manifest::Outline& outline = document.outlines[in.rims[k].outline];
     if (k >= first.fitted.sightings.size()) continue;
     const SightingFit& fit = first.fitted.sightings[k];
     enter_figures(fit, outline);
+    const std::string lamp = outline.kind == "shadow" ? outline.light : "";  // there may be one of each lamp
     if (!request.output_path) continue;
-    const std::string name = file_stem(outline.image) + "-" + file_stem(outline.object) + "-" + outline.kind + ".csv";
-    const auto path = request.output_path(name);
+    const auto path = request.output_path(file_stem(outline.image) + "-" + file_stem(outline.object) + "-" +
+                                          outline.kind + (lamp.empty() ? "" : "-" + file_stem(lamp)) + ".csv");
     write_file(path, point_table(in, first.fitted.setting, k, fit));
-    outline.file =
-        manifest::add_file(document, path, "outline-" + outline.image + "-" + outline.object + "-" + outline.kind);
+    outline.file = manifest::add_file(
+        document, path,
+        "outline-" + outline.image + "-" + outline.object + "-" + outline.kind + (lamp.empty() ? "" : "-" + lamp));
   }
   if (!request.page.empty()) write_file(request.page, alignment_page(document, in, all));
   return worst;

@@ -94,7 +94,51 @@ manifest::AlignedCamera camera_entry(const AlignmentInput& in, std::size_t stati
   return camera;
 }
 
+// The ground's plane turned the shortest way to where it was found, about the point beneath the first body.
+manifest::Pose<frame::World, frame::Object> ground_pose(const AlignmentInput& in, const Fitted& f) {
+  const Ground& ground = *f.setting.ground;
+  const GroundAxes axes = ground_axes(f.setting);
+  const Vec3 from = in.stated.ground->normal, axis = cross(from, ground.normal);
+  const double sine = norm(axis), angle = std::atan2(sine, dot(from, ground.normal));
+  const Quaternion turn = quaternion_of_rotation_vector(sine > 0 ? axis * (angle / sine) : Vec3{});
+  manifest::Pose<frame::World, frame::Object> pose;
+  pose.rotation = normalized(turn * in.world_from_ground.rotation);
+  const Vec3 place = axes.pivot_m + matrix_of(turn) * (in.world_from_ground.translation_m - axes.pivot_m);
+  pose.translation_m = place - ground.normal * ground.height_m(place);
+  const Index tilt = place_of(in.question.freedoms, Block::ground_tilt, 0),
+              shift = place_of(in.question.freedoms, Block::ground_shift, 0);
+  const std::array<Index, 3> number{tilt, tilt + 1, shift};
+  const std::array<Vec3, 3> motion{axes.t, axes.b, ground.normal};  // two turns and a shift
+  std::vector<double> covariance(36, 0);
+  const auto part = [&](std::size_t number_of, Index i) {
+    const bool turns = number_of < 2;
+    const Vec3 v = motion[number_of];
+    return turns == (i < 3) ? std::array<double, 3>{v.x, v.y, v.z}[static_cast<std::size_t>(i % 3)] : 0.0;
+  };
+  for (Index i = 0; i < 6; ++i)
+    for (Index k = 0; k < 6; ++k)
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b)
+          covariance[static_cast<std::size_t>(6 * i + k)] +=
+              part(a, i) * f.covariance(number[a], number[b]) * part(b, k);
+  pose.sigma = manifest::sigma_at(std::span<const double, 36>(covariance), pose.translation_m - axes.pivot_m);
+  return pose;
+}
+
 }  // namespace
+
+std::vector<std::size_t> loose_lamps(const AlignmentInput& in, const Fitted& f) {
+  std::vector<std::size_t> loose;
+  for (std::size_t l = 0; l < in.lamps.size(); ++l) {
+    const Index at = place_of(in.question.freedoms, Block::lamp_shift, l);
+    if (at < 0) continue;
+    double nearest = HUGE_VAL;
+    for (const Body& body : f.setting.bodies) nearest = std::min(nearest, norm(f.setting.lamps_m[l] - body.centre_m()));
+    const std::vector<double> sigma = sigmas(f, at);
+    if (*std::max_element(sigma.begin(), sigma.end()) > 0.5 * nearest) loose.push_back(l);
+  }
+  return loose;
+}
 
 manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const Aligned& found) {
   const Fitted& f = found.fitted;
@@ -117,6 +161,7 @@ manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const A
   }
   a.open = found.open;
   a.open.insert(a.open.end(), found.symmetries.begin(), found.symmetries.end());
+  for (const std::size_t l : loose_lamps(in, f)) a.open.push_back("the place of lamp " + in.lamps[l]);
   for (const Rival& r : found.rivals) a.candidates.push_back({pose_of(r.setting.bodies[body]), r.rms_px, r.explained});
   const std::vector<LampSize> sizes = lamp_sizes(in, f.setting);
   for (std::size_t l = 0; l < in.lamps.size(); ++l)
@@ -140,6 +185,8 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
   const auto& freedoms = in.question.freedoms;
   const Body& b = f.setting.bodies[body];
   for (manifest::Object& object : document.objects) {
+    if (object.id == in.ground && place_of(freedoms, Block::ground_tilt, 0) >= 0)
+      object.world_from_object = ground_pose(in, f);
     if (object.id != in.bodies[body]) continue;
     object.world_from_object = pose_of(b);
     const Index turn = place_of(freedoms, Block::body_turn, body), shift = place_of(freedoms, Block::body_shift, body);
@@ -161,9 +208,10 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
       use.sigma[names[k]] = {s * sigma_at(f, uniform ? at : at + static_cast<Index>(k))};
     }
   }
+  const std::vector<std::size_t> loose = loose_lamps(in, f);
   for (std::size_t l = 0; l < in.lamps.size(); ++l) {
     const Index at = place_of(freedoms, Block::lamp_shift, l);
-    if (at < 0) continue;
+    if (at < 0 || std::find(loose.begin(), loose.end(), l) != loose.end()) continue;
     manifest::Light& light = document.lights.at(in.lamps[l]);
     light.parameters["position_m"].value = numbers(f.setting.lamps_m[l]);
     light.sigma["position_m"] = sigmas(f, at);
@@ -178,11 +226,14 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
     move_images(document, in.images_of_station[s], pose);
   }
   for (std::size_t c = 0; c < in.cameras.size(); ++c) {
-    if (place_of(freedoms, Block::lens_focal, c) < 0) continue;
+    const Index at = place_of(freedoms, Block::lens_focal, c);
+    if (at < 0) continue;
     manifest::Camera& camera = document.cameras.at(in.cameras[c]);
-    const double factor = f.setting.lenses[c].fx_px / in.stated.lenses[c].fx_px;
-    for (double& v : camera.fx_px.value) v *= factor;
-    for (double& v : camera.fy_px.value) v *= factor;
+    const Lens& lens = f.setting.lenses[c];
+    camera.fx_px.value = {lens.fx_px}, camera.fy_px.value = {lens.fy_px};
+    camera.sigma["fx_px"] = {lens.fx_px * sigma_at(f, at)};
+    camera.sigma["fy_px"] = {lens.fy_px * sigma_at(f, at)};
+    camera.covariance = {};  // of a calibration that this is no longer
   }
 }
 

@@ -9,7 +9,11 @@ namespace gonio::alignment {
 manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const Aligned& found);
 void enter_figures(const SightingFit& fit, manifest::Outline& outline);
 
-// Moves objects, lamps and cameras of the document to where they were found, with standard deviations.
+// Lamps that are asked for, and whose place no rim holds: known no better than to half of their distance.
+std::vector<std::size_t> loose_lamps(const AlignmentInput& in, const Fitted& fitted);
+
+// Moves objects, lamps, cameras and the ground of the document to where they were found, with standard deviations.
+// Loose lamps stay where they are stated.
 void move_document(manifest::Document& document, const AlignmentInput& in, std::size_t body, const Aligned& found);
 
 // The table of a rim's points: align(1), FILES.

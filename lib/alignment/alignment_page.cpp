@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alignment/alignment_entry.h"
+#include "alignment/convergence.h"
 #include "alignment/overlay.h"
+#include "alignment/region_difference.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "io/picture.h"
@@ -44,6 +47,13 @@ io::Image shown(const manifest::Document& document, const std::string& id) {
   return out;
 }
 
+// Of those that were found together.
+const Fitted& shared_fit(const std::vector<Aligned>& all) {
+  for (const Aligned& a : all)
+    if (a.stands()) return a.fitted;
+  return all.front().fitted;
+}
+
 std::string with_sigma(double value, double sigma, double unit) {
   return report::with_sigma(unit * value, unit * sigma);
 }
@@ -53,7 +63,7 @@ report::TableText pose_table(const AlignmentInput& in, const std::vector<Aligned
                       .columns = {{"What", "", false}, {"x"}, {"y"}, {"z"}, {"Unit", "", false}},
                       .rows = {}};
   Eigen::Index at = 0;
-  const Fitted& f = all.front().fitted;
+  const Fitted& f = shared_fit(all);
   for (const Freedom& free : in.question.freedoms) {
     std::vector<std::string> row;
     const auto sigma = [&](std::size_t k) {
@@ -79,6 +89,19 @@ report::TableText pose_table(const AlignmentInput& in, const std::vector<Aligned
       row = {"growth of " + in.bodies[free.which], with_sigma(s.x, sigma(0), 100),
              free.uniform ? "" : with_sigma(s.y, sigma(1), 100), free.uniform ? "" : with_sigma(s.z, sigma(2), 100),
              "%"};
+    }
+    if (free.block == Block::lens_focal) {
+      const Lens& lens = f.setting.lenses[free.which];
+      row = {"focal lengths of " + in.cameras[free.which], with_sigma(lens.fx_px, lens.fx_px * sigma(0), 1),
+             with_sigma(lens.fy_px, lens.fy_px * sigma(0), 1), "", "px"};
+    }
+    if (free.block == Block::ground_tilt || free.block == Block::ground_shift) {
+      const std::vector<double> by = change_between(in.stated, f.setting, {free});
+      row = free.block == Block::ground_shift
+                ? std::vector<std::string>{"rise of " + in.ground, "", "", with_sigma(by[0], sigma(0), 1e3), "mm"}
+                : std::vector<std::string>{"tilt of " + in.ground + " about its tangents",
+                                           with_sigma(by[0], sigma(0), 180 / pi), with_sigma(by[1], sigma(1), 180 / pi),
+                                           "", "degrees"};
     }
     if (!row.empty()) t.rows.push_back(row);
     at += static_cast<Eigen::Index>(free.size());
@@ -140,11 +163,65 @@ std::string headline(const AlignmentInput& in, const std::vector<Aligned>& all) 
   return text;
 }
 
+struct Photograph {
+  std::string image;
+  std::vector<std::size_t> rims;
+};
+// The first 16 that show rims.
+std::vector<Photograph> photographs(const AlignmentInput& in, const Fitted& f) {
+  std::vector<Photograph> out;
+  for (std::size_t k = 0; k < in.rims.size() && k < f.sightings.size(); ++k) {
+    const auto known =
+        std::find_if(out.begin(), out.end(), [&](const Photograph& p) { return p.image == in.rims[k].image; });
+    if (known != out.end())
+      known->rims.push_back(k);
+    else if (out.size() < 16)
+      out.push_back({in.rims[k].image, {k}});
+  }
+  return out;
+}
+
+void show_rims(report::Page& page, const manifest::Document& document, const AlignmentInput& in, const Fitted& f) {
+  page.section("Pictures");
+  std::vector<report::Figure> figures;
+  for (const Photograph& p : photographs(in, f))
+    figures.push_back(
+        {.svg = overlay_svg(in, f.setting, p.rims, f.sightings, shown(document, p.image)),
+         .title = p.image,
+         .caption = "The model's rims: object blue, shadow orange; red: seen points that count for nothing."});
+  page.figures(figures, 520);
+}
+
+void show_differences(report::Page& page, const manifest::Document& document, const AlignmentInput& in,
+                      const Fitted& f) {
+  page.section("Before and after");
+  page.paragraph(
+      "The model's regions against the masks. Blue: pixels of a mask that the model does not cover; red: pixels that "
+      "the model covers outside of its mask; grey: both agree; palest grey: hidden, or nobody can tell.");
+  for (const Photograph& p : photographs(in, f)) {
+    const auto two = region_differences(in, p.rims, read_regions(document, p.image, {}), {in.stated, f.setting});
+    std::vector<report::Figure> pair;
+    for (std::size_t k = 0; k < two.size(); ++k)
+      pair.push_back({.png = io::encode_png(two[k].picture),
+                      .title = p.image + (k == 0 ? ", as stated" : ", as the fit ended"),
+                      .caption = words_of(two[k])});
+    page.figures(pair, 480);
+  }
+}
+
+void show_convergence(report::Page& page, const AlignmentInput& in, const std::vector<Aligned>& all) {
+  page.section("Convergence");
+  std::vector<report::Plot> plots;
+  for (std::size_t b = 0; b < all.size(); ++b) plots.push_back(convergence_plot(in.bodies[b], all[b].tried));
+  page.plots(plots);
+  for (std::size_t b = 0; b < all.size(); ++b) page.table(table_of_starts(in.bodies[b], all[b].tried));
+}
+
 }  // namespace
 
 std::string alignment_page(const manifest::Document& document, const AlignmentInput& in,
                            const std::vector<Aligned>& all) {
-  const Fitted& f = all.front().fitted;
+  const Fitted& f = shared_fit(all);
   const bool good = std::all_of(all.begin(), all.end(), [](const Aligned& a) { return a.verdict == Verdict::found; });
   report::Page page("align", headline(in, all),
                     format("%zu rims from %zu places, by their normal offsets from the mesh's own rims", in.rims.size(),
@@ -153,22 +230,7 @@ std::string alignment_page(const manifest::Document& document, const AlignmentIn
   page.key_numbers({{"rms offset", report::number_text(f.rms_px, 3), "px", "of points that count"},
                     {"one error is alike over", report::number_text(f.correlation_px, 2), "px", "of rim"},
                     {"seen of the model's rims", report::number_text(100 * f.explained, 3), "%", ""}});
-  page.section("Pictures");
-  std::vector<report::Figure> figures;
-  std::vector<std::string> images;
-  for (const SeenRim& rim : in.rims)
-    if (std::find(images.begin(), images.end(), rim.image) == images.end()) images.push_back(rim.image);
-  for (std::size_t i = 0; i < std::min<std::size_t>(images.size(), 16); ++i) {
-    std::vector<std::size_t> own;
-    for (std::size_t k = 0; k < in.rims.size() && k < f.sightings.size(); ++k)
-      if (in.rims[k].image == images[i]) own.push_back(k);
-    if (own.empty()) continue;
-    figures.push_back(
-        {.svg = overlay_svg(in, f.setting, own, f.sightings, shown(document, images[i])),
-         .title = images[i],
-         .caption = "The model's rims: object blue, shadow orange; red: seen points that count for nothing."});
-  }
-  page.figures(figures, 520);
+  show_rims(page, document, in, f);
   page.section("Found");
   page.table(pose_table(in, all));
   for (const Aligned& a : all) {
@@ -176,6 +238,10 @@ std::string alignment_page(const manifest::Document& document, const AlignmentIn
     open.insert(open.end(), a.symmetries.begin(), a.symmetries.end());
     if (!open.empty()) page.paragraph("No rim holds, or looks alike:"), page.list(open);
   }
+  for (const std::size_t lamp : loose_lamps(in, f))
+    page.paragraph("No rim holds the place of lamp " + in.lamps[lamp] + ".");
+  show_differences(page, document, in, f);
+  show_convergence(page, in, all);
   page.section("What is left");
   page.table(rim_table(document, in, f));
   page.plot(offsets_plot(in, f));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "alignment/rim_covariance.h"
+#include "alignment/rim_offsets.h"
 #include "alignment/seen_points.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -33,22 +34,6 @@ std::vector<double> shares_of(const Question& question, const std::vector<SeenPo
   return repeated;
 }
 
-// A whitened residual and what the loss makes of it.
-struct Loss {
-  double width, reach;
-  // rho of an offset and the weight of its square; beyond reach it stays what it is there.
-  double cost(double d) const {
-    const double s = std::min(std::abs(d), reach) / width;
-    return width * width * std::log1p(s * s);
-  }
-  double weight(double d) const { return 1 / (1 + d * d / (width * width)); }
-};
-
-// Of a body that dips into the ground, what is beneath has no rim that could be seen: the ground's own cut is there.
-bool beneath(const Setting& s, std::size_t body, const RimPlace& place) {
-  return s.ground && height_of(s, body, place.mesh_point) < 0;
-}
-
 // One sighting's part of the sum: cost, and where slopes are asked for, J'WJ and J'Wr.
 struct Part {
   double cost = 0;
@@ -59,14 +44,22 @@ struct Part {
 class Rims final : public optim::Descent {
  public:
   Rims(const Question& question, const Setting& start, const Stage& stage, const std::vector<double>& sigma,
-       const std::vector<SeenPoints>& seen, const std::vector<double>& shares)
-      : q_(question), stage_(stage), sigma_(sigma), seen_(seen), shares_(shares), at_(start), next_(start) {
+       const std::vector<SeenPoints>& seen, const std::vector<double>& shares, FitPath* path = nullptr)
+      : q_(question),
+        stage_(stage),
+        sigma_(sigma),
+        seen_(seen),
+        shares_(shares),
+        path_(path),
+        at_(start),
+        next_(start) {
     count_ = static_cast<Index>(numbers_of(q_.freedoms));
   }
   const Setting& setting() const { return at_; }
   double cost_at(const Setting& s) const { return sum(s, false).cost; }
 
   void linearise() override {
+    if (path_) path_->rms_px.push_back(rms_offset(at_, q_, path_->reach_px));
     Part all = sum(at_, true);
     h_ = std::move(all.h), g_ = std::move(all.g);
   }
@@ -75,7 +68,8 @@ class Rims final : public optim::Descent {
     for (Index i = 0; i < count_; ++i) damped(i, i) += damping * std::max(h_(i, i), 1e-30);
     const Eigen::VectorXd step = linear::Ldlt(damped).solve(Eigen::VectorXd(-g_));
     next_ = moved(at_, q_.freedoms, {step.data(), step.data() + step.size()});
-    return {.promised = -(2 * g_.dot(step) + step.dot(h_ * step))};
+    const Eigen::VectorXd curved = h_ * step;  // by itself: within the sum GCC 12 takes it for freed
+    return {.promised = -(2 * g_.dot(step) + step.dot(curved))};
   }
   double evaluate() override { return cost_at(next_); }
   void accept() override { at_ = next_; }
@@ -190,66 +184,12 @@ class Rims final : public optim::Descent {
   const std::vector<double>& sigma_;
   const std::vector<SeenPoints>& seen_;
   const std::vector<double>& shares_;
+  FitPath* path_;
   Setting at_, next_;
   Index count_ = 0;
   Eigen::MatrixXd h_;
   Eigen::VectorXd g_;
 };
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
-// What each sighting's points are off, and by how much its model's rim is accounted for.
-SightingFit offsets_of(const Setting& s, const Sighting& sighting, const SeenPoints& seen, double reach) {
-  SightingFit fit;
-  fit.offset_px.assign(sighting.points.size(), std::numeric_limits<double>::quiet_NaN());
-  fit.weight.assign(sighting.points.size(), 0);
-  const ModelRim rim(s, sighting.subject);
-  if (!rim.exists()) return fit;
-  std::vector<double> sizes;
-  std::size_t counts = 0;
-  for (std::size_t i = 0; i < sighting.points.size(); ++i) {
-    const RimPoint& point = sighting.points[i];
-    if (!point.counts) continue;
-    ++counts;
-    const auto place = rim.nearest(point.pixel, point.outward, reach);
-    if (!place || beneath(s, sighting.subject.body, *place)) {
-      counts -= place.has_value();
-      continue;
-    }
-    fit.offset_px[i] = place->distance_px;
-    sizes.push_back(std::abs(place->distance_px));
-  }
-  fit.sigma_px = std::max(0.01, 1.4826 * median(sizes));
-  const Loss loss{2.5, infinite};
-  double squares = 0, sum = 0, met = 0;
-  const double near = 1 + 3 * fit.sigma_px;
-  for (std::size_t i = 0; i < sighting.points.size(); ++i) {
-    const double d = fit.offset_px[i];
-    if (std::isfinite(d)) fit.weight[i] = loss.weight(d / fit.sigma_px), met += std::abs(d) < near;
-    if (fit.weight[i] > 0.1)
-      squares += d * d, sum += d, ++fit.counted;
-    else if (sighting.points[i].counts)
-      ++fit.left_out;
-  }
-  if (fit.counted > 0) {
-    const auto n = static_cast<double>(fit.counted);
-    fit.rms_px = std::sqrt(squares / n), fit.mean_px = sum / n;
-  }
-  fit.met = counts > 0 ? met / static_cast<double>(counts) : 0;
-  std::size_t visible = 0, explained = 0;
-  for (const RimPlace& place : rim.places(1)) {
-    if (beneath(s, sighting.subject.body, place) || (sighting.unseen && sighting.unseen(place.pixel))) continue;
-    ++visible;
-    explained += seen.nearest(place.pixel, place.outward, near).has_value();
-  }
-  fit.explained = visible > 0 ? static_cast<double>(explained) / static_cast<double>(visible) : 0;
-  return fit;
-}
 
 }  // namespace
 
@@ -279,13 +219,13 @@ struct Descent {
   std::vector<double> sigma, shares;
 };
 Descent go_down(const Setting& start, const Question& question, const std::vector<Stage>& stages,
-                const std::vector<SeenPoints>& seen) {
+                const std::vector<SeenPoints>& seen, FitPath* path) {
   Descent d{start, {}, std::vector<double>(question.sightings.size(), 1.0), shares_of(question, seen)};
   for (const Stage& stage : stages) {
     if (!(stage.width_px > 0))
       for (std::size_t i = 0; i < d.sigma.size(); ++i)
         d.sigma[i] = offsets_of(d.setting, question.sightings[i], seen[i], stage.reach_px).sigma_px;
-    Rims rims(question, d.setting, stage, d.sigma, seen, d.shares);
+    Rims rims(question, d.setting, stage, d.sigma, seen, d.shares, path);
     const double cost = rims.cost_at(d.setting);
     if (!std::isfinite(cost))
       throw Error(Exit::data, "start", "has a rim behind a camera or above its lamp", "state other poses");
@@ -295,6 +235,7 @@ Descent go_down(const Setting& start, const Question& question, const std::vecto
     d.last = optim::descend(rims, cost, limits);
     d.setting = rims.setting();
   }
+  if (path) path->rms_px.push_back(rms_offset(d.setting, question, path->reach_px));
   return d;
 }
 
@@ -306,13 +247,13 @@ std::vector<SeenPoints> seen_points(const Question& question) {
 
 }  // namespace
 
-Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages) {
-  return go_down(start, question, stages, seen_points(question)).setting;
+Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages, FitPath* path) {
+  return go_down(start, question, stages, seen_points(question), path).setting;
 }
 
-Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages) {
+Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages, FitPath* path) {
   const std::vector<SeenPoints> seen = seen_points(question);
-  Descent down = go_down(start, question, stages, seen);
+  Descent down = go_down(start, question, stages, seen, path);
   Fitted f;
   f.setting = std::move(down.setting), f.descended = down.last, f.cost = down.last.cost;
   const Stage last = stages.back();

@@ -46,8 +46,9 @@ struct Fitted {
   Eigen::MatrixXd covariance;
 };
 
-// Error(data) where a rim of the start does not exist (behind a camera, above a lamp).
-Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
+// Error(data) where a rim of the start does not exist (behind a camera, above a lamp). `path`, if any, is continued.
+Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages,
+                FitPath* path = nullptr);
 // Costs of settings alone, each point's share bounded: for choosing between starts. Infinite where rims do not exist.
 // The question has to outlive it.
 class RimCost {

@@ -30,6 +30,9 @@ class MaskRegions {
   double smoothed_by(std::size_t outline, double smooth_px) const {
     return mask(outline).binary ? smooth_px : 0.5 * smooth_px;
   }
+  const std::vector<Mask>& masks() const { return masks_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
   // Could no rim of that outline be seen at `pixel`: beyond the picture, or beneath an object's mask?
   bool hides(std::size_t outline, Vec2 pixel) const;
 

@@ -34,10 +34,17 @@ struct Stage {
   int most_steps = 30;
   double small_fall = 1e-6;
 };
+// How far rims were off before each step of a fit, and at its end: see rms_offset() (rim_offsets.h).
+struct FitPath {
+  double reach_px = 60;  // a point without a rim so near counts as one that is so far off
+  std::vector<double> rms_px{};
+};
 // From anywhere within `start_px` of the rims to the end.
 std::vector<Stage> stages_from(double start_px);
 
-// Where the fit ends, without figures or covariance. Error(data) where a rim of the start does not exist.
-Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages);
+// Where the fit ends, without figures or covariance; `path`, if any, is continued. Error(data) where a rim of the start
+// does not exist.
+Setting settle_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages,
+                    FitPath* path = nullptr);
 
 }  // namespace gonio::alignment

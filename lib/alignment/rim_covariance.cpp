@@ -161,9 +161,9 @@ void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eige
   h += (bend_of_loss(f) - 1) * by_points;
   f.correlation_px = weight > 0 ? correlation / weight : 0;
   // In units in which every number counts alike, so that nothing is lost to rounding; what nothing holds gets a large
-  // variance.
+  // variance; what is not seen at all as well, without its square running over.
   Eigen::VectorXd unit(count);
-  for (Index i = 0; i < count; ++i) unit(i) = 1 / std::sqrt(std::max(h(i, i), 1e-300));
+  for (Index i = 0; i < count; ++i) unit(i) = 1 / std::sqrt(std::max(h(i, i), 1e-20));
   Eigen::MatrixXd scaled = unit.asDiagonal() * h * unit.asDiagonal();
   constexpr double ridge = 1e-10;  // as if that much were known, and as badly as that
   scaled.diagonal().array() += ridge;

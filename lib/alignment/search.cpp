@@ -126,10 +126,13 @@ std::vector<Start> distinct(std::vector<Start> starts, std::size_t body, bool mo
   };
   for (Start& s : starts) {
     if (!std::isfinite(s.cost)) continue;
-    const bool known = std::any_of(out.begin(), out.end(), [&](const Start& o) {
+    const auto known = std::find_if(out.begin(), out.end(), [&](const Start& o) {
       return turn_between(relative(o.setting), relative(s.setting)) < 0.08;
     });
-    if (!known) out.push_back(std::move(s));
+    if (known == out.end())
+      out.push_back(std::move(s));
+    else
+      known->paths.insert(known->paths.end(), s.paths.begin(), s.paths.end());
   }
   return out;
 }
@@ -156,7 +159,9 @@ void let_down(std::vector<Start>& starts, Question question, const RimCost& cost
   question.contacts.clear();
   for (Start& s : starts) {
     question.stated = s.setting;
-    s.setting = settle_rims(s.setting, question, stages);
+    FitPath path;
+    s.setting = settle_rims(s.setting, question, stages, wish.record ? &path : nullptr);
+    if (wish.record) s.paths.push_back(std::move(path.rms_px));
     s.setting.bodies[body].shape = fine;
     s.cost = cost.of(s.setting, judge);
   }

@@ -21,11 +21,14 @@ struct SearchWish {
   double reach_px = 40;  // of the comparison
   // The camera moves instead of the body, which stands as it is stated: one station, whose pose is not known.
   bool move_station = false;
+  bool record = false;  // fill Start::paths
 };
 
 struct Start {
   Setting setting;
   double cost = 0;  // of its rims, both ways; smaller is better
+  // How far rims were off on the way there (FitPath): its own way first, then those of starts that led to the same end.
+  std::vector<std::vector<double>> paths{};
 };
 
 // Starts for body `body`, best first, no two alike; from the sightings of its own rim (not of shadows) in `question`.

@@ -35,9 +35,11 @@ const cli::Program& gonio_program() {
       .takes_out = true,
       .sections_read = {"files", "cameras", "images", "meshes", "objects", "lights", "outlines"},
       .sections_written = {"files", "cameras", "images", "objects", "lights", "mechanisms", "outlines", "alignments"},
-      .files = {{"IMAGE-OBJECT-KIND-mask.exr", "with --masks: shares of pixels, and what nobody can tell"},
-                {"IMAGE-OBJECT-KIND.csv",
-                 "of each rim: its points, their offsets from the aligned model, and where on the mesh"}},
+      .files =
+          {{"IMAGE-OBJECT-KIND-mask.exr", "with --masks: shares of pixels, and what nobody can tell"},
+           {"IMAGE-OBJECT-KIND[-LIGHT].csv",
+            "of each rim: its points, their offsets from the aligned model, and where on the mesh; LIGHT where the "
+            "outline names one"}},
       .exits = {{Exit::negative, "an object is lost, or only its mirror image fits; it stays where it was stated"},
                 {Exit::quality, "several poses fit, or a direction is open"}},
       .references =
