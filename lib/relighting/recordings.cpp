@@ -207,4 +207,18 @@ double noise_sigma(const Recording& image, double value, std::size_t place) {
   return image.variance.empty() ? noise_sigma(image, value) : std::sqrt(double{image.variance[place]});
 }
 
+Rgb local_mean(const Recording& image, int x, int y) {
+  Rgb sum;
+  double n = 0;
+  for (int v = std::max(0, y - 2); v <= std::min(image.picture.height - 1, y + 2); ++v)
+    for (int u = std::max(0, x - 2); u <= std::min(image.picture.width - 1, x + 2); ++u) {
+      if (!image.counts[static_cast<std::size_t>(v) * static_cast<std::size_t>(image.picture.width) +
+                        static_cast<std::size_t>(u)])
+        continue;
+      sum += Rgb{image.picture.at(u, v, 0), image.picture.at(u, v, 1), image.picture.at(u, v, 2)};
+      n += 1;
+    }
+  return n > 0 ? sum / n : sum;
+}
+
 }  // namespace gonio::relighting

@@ -64,5 +64,7 @@ io::Image read_take(const manifest::Document& document, const Recording& image, 
 double noise_sigma(const Recording& image, double value);
 // The same at a place in its picture.data, by what the file says of that place.
 double noise_sigma(const Recording& image, double value, std::size_t place);
+// Mean of the counted pixels of a 5 x 5 window: a brightness that the pixel's own noise hardly moves.
+Rgb local_mean(const Recording& image, int x, int y);
 
 }  // namespace gonio::relighting

@@ -22,10 +22,10 @@ SEED   = 1
 SPP    = 64
 BUDGET = 10s
 PHOTO_SPP_bunny = 256
-PHOTO_SPP_glass = 256
-PHOTO_SPP_metal = 64
+PHOTO_SPP_glass = 2048
+PHOTO_SPP_metal = 256
 RUNGS_bunny = 0 1 2 3 4
-RUNGS_glass = 0 1 2 3 4
+RUNGS_glass = 0 1 2 3
 RUNGS_metal = 0 1 2
 GONIO_DATA ?= $(dir $(lastword $(MAKEFILE_LIST)))../../../shared/data
 

@@ -2,7 +2,7 @@
 
   mesh CASE DATA FILE              the stand-in's mesh as PLY
   truth CASE SEED                  the scene as it is; seeds differ in place, lamps, cameras and the material's numbers
-  sprayed TRUTH                    the same with a matte red object, as if sprayed for a scanner
+  sprayed TRUTH                    the same with a matte yellow object, as if sprayed for a scanner
   empty TRUTH                      the same without the object, for masks by background
   disturbed PHOTOGRAPHS SEED [EMPTY]   what is believed before align, and the pictures of EMPTY beside the others
   rung CASE K ALIGNED PHOTOGRAPHS [LOWER]   the scene of a rung; LOWER is the rung below as explain fitted it
@@ -34,24 +34,23 @@ LADDERS = {
         ("interfaced", "surface.subsurface",
          lambda n: {"model": "coated-diffuse", "albedo": free([0.5, 0.5, 0.5], 0, 1), "f0": F0,
                     "alpha": free(0.2, 0.02, 0.6)}),
-        ("dipole", None, lambda n: {"model": "diffuse", "albedo": free([0.5, 0.5, 0.5], 0, 1)}),
-        ("directional", None, lambda n: {"model": "directional-dipole", "eta": 1.54, "alpha": 0.2, **n}),
+        ("dipole", "surface.directional-subsurface",
+         lambda n: {"model": "coated-diffuse", "albedo": free([0.5, 0.5, 0.5], 0, 1), "f0": F0, "alpha": 0.2}),
+        ("directional", "surface.print-slopes", lambda n: {"model": "directional-dipole", "eta": 1.54, "alpha": 0.2, **n}),
         ("varying", None, lambda n: {"model": "directional-dipole", "eta": 1.54, **n,
                                      "laws": {"alpha": {"law": "print-normal", "rho": 0.2, "s": 2.4}}}),
     ],
     "glass": [
         ("glass", "volume.absorption", lambda n: {"model": "dielectric", "eta": 1.54}),
-        ("absorbing", None, lambda n: {"model": "dielectric", "eta": 1.54, **n}),
-        ("rough", None, lambda n: {"model": "dielectric", "eta": 1.54, "alpha": 0.15, **n}),
-        ("varying", None, lambda n: {"model": "dielectric", "eta": 1.54, **n,
-                                     "laws": {"alpha": {"law": "print-normal", "rho": 0.15, "s": 5.0}}}),
+        ("absorbing", "surface.roughness", lambda n: {"model": "dielectric", "eta": 1.54, **n}),
+        ("rough", "surface.print-layers", lambda n: {"model": "dielectric", "eta": 1.54, "alpha": 0.15, **n}),
         ("layered", None, lambda n: {"model": "dielectric", "eta": 1.54, **n,
                                      "laws": {"alpha": {"law": "print-layers", "alpha_even": 0.15, "alpha_odd": 0.4,
                                                         "layer_m": 0.004}}}),
     ],
     "metal": [
-        ("metal", None, lambda n: {"model": "glossy-metal", "f0": ALUMINIUM, "alpha": 0.0}),
-        ("rough", None, lambda n: {"model": "glossy-metal", "f0": ALUMINIUM, "alpha": free(0.3, 0.02, 1)}),
+        ("metal", "surface.roughness", lambda n: {"model": "glossy-metal", "f0": ALUMINIUM, "alpha": 0.0}),
+        ("rough", "surface.polish", lambda n: {"model": "glossy-metal", "f0": ALUMINIUM, "alpha": free(0.3, 0.02, 1)}),
         ("curved", None, lambda n: {"model": "glossy-metal", "f0": ALUMINIUM,
                                     "laws": {"alpha": {"law": "polish-curvature", "rho": 0.22, "s": 4.5,
                                                        "curvature_per_m": 60}}}),
@@ -143,7 +142,7 @@ def truth(case, seed):
 
 
 def sprayed(document):
-    document["surfaces"]["object"] = {"model": "diffuse", "albedo": [0.3, 0.06, 0.04]}
+    document["surfaces"]["object"] = {"model": "diffuse", "albedo": [0.75, 0.6, 0.25]}
     return document
 
 

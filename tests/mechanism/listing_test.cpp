@@ -40,7 +40,8 @@ const std::set<std::string> of_other_simulators = {"print.growth", "print.light-
 // exposures; light that lies on a chart; what full pixels give their neighbours, what some gather
 // in the dark, what filters that are not the eye's do to colours, what an open aperture loses at a rim; what
 // bends the points of structured light; sizes that differ from a model's along each axis, what curls, and
-// light that masks of shadows leave out.
+// light that masks of shadows leave out; how rough glass and metal are and where, and light beneath a surface that
+// remembers where it was going.
 const std::set<std::string> besides = words(
     "lens.rational surface.residue surface.walls tracks.scale ct.threshold ct.scale ct.blur ct.cupping "
     "ct.beam-hardening ct.scatter ct.ring ct.streak ct.axis-tilt robot.warm-up robot.joule-heating "
@@ -51,7 +52,8 @@ const std::set<std::string> besides = words(
     "colour.glare sensor.blooming sensor.hot-pixel colour.metamerism optics.lens-shading projector.gamma "
     "projector.lens projector.moved rig.drift structured-light.subsurface structured-light.motion "
     "structured-light.interreflection structured-light.edge structured-light.defocus geometry.shrinkage "
-    "geometry.bend ground.not-flat mask.caustic");
+    "geometry.bend ground.not-flat mask.caustic surface.roughness surface.print-slopes surface.print-layers "
+    "surface.polish surface.directional-subsurface");
 
 // Owed and not there yet: printed, until they are declared and leave this list.
 const std::set<std::string> awaited = {};

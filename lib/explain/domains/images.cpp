@@ -1,6 +1,7 @@
 // Linear images of a scene whose geometry is known.
 #include "explain/domain.h"
 #include "explain/images/images_problem.h"
+#include "explain/traced/takes.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/mesh.h"
@@ -39,6 +40,12 @@ std::vector<Untouched> image_reasons() {
           {"mask.", "pictures are asked pixel by pixel, without masks"},
           {"geometry.shrinkage",
            "rims tell sizes along each axis (align --free scale); pictures are asked for one growth, geometry.scale"},
+          {"surface.roughness",
+           "the roughness of a gloss is free or surface.interface's; that of glass and metal is traced"},
+          {"surface.print-slopes", "a roughness that varies over the object is traced"},
+          {"surface.print-layers", "a roughness that varies over the object is traced"},
+          {"surface.polish", "a roughness that varies over the object is traced"},
+          {"surface.directional-subsurface", "the fast model spreads light evenly about where it enters: traced"},
           {"surface.residue", "reliefs turn with the sample, which is measured by tables of reflectance"},
           {"surface.walls", "reliefs turn with the sample, which is measured by tables of reflectance"},
           {"surface.thin-film", "three channels average over its fringes: tables of reflectance in narrow bands"},
@@ -62,7 +69,10 @@ const Domain& images() {
       .order = 2,
       .after = "boards",
       .needs_it = true,
-      .applies = explain::images::has_recordings,
+      .applies =
+          [](const manifest::Document& d) {
+            return explain::images::has_recordings(d) && !explain::traced::beyond_the_fast_model(d);
+          },
       .within_reach = relighting::check_lights,
       .problems =
           [](const manifest::Document& document, const ProblemOptions& options) {

@@ -43,19 +43,6 @@ int degree_for(std::size_t surfaces) {
   return degree;
 }
 
-// Mean of the counted pixels of a 5 x 5 window: a brightness that the pixel's own noise hardly moves.
-Rgb local_mean(const Recording& image, int x, int y) {
-  Rgb sum;
-  double n = 0;
-  for (int v = std::max(0, y - 2); v <= std::min(image.picture.height - 1, y + 2); ++v)
-    for (int u = std::max(0, x - 2); u <= std::min(image.picture.width - 1, x + 2); ++u) {
-      if (!image.counts[at(image.picture, u, v)]) continue;
-      sum += Rgb{image.picture.at(u, v, 0), image.picture.at(u, v, 1), image.picture.at(u, v, 2)};
-      n += 1;
-    }
-  return n > 0 ? sum / n : sum;
-}
-
 // What is seen through glass is not simulated here.
 bool shows_glass(const ViewCache& cache, const Pixel& pixel, const SceneState& state) {
   for (std::size_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f)

@@ -6,47 +6,71 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "render/image_seed.h"
 #include "render/integrator.h"
+#include "render/pass_splats.h"
 #include "render/passes.h"
 #include "scene/scene.h"
 
 namespace gonio::explain::images {
 namespace {
 
-constexpr double least_spp = 32, most_spp = 1024;
+constexpr std::uint64_t photons_per_path = 3;
+constexpr double least_spp = 32, most_spp = 4096;
 
-void trace_one(const render::Integrator& integrator, const render::SamplePlan& plan, std::uint64_t seed,
-               std::size_t place, TracedPixels& picture) {
-  const auto [x, y] = picture.at[place];
+// One pass of a pixel: the mean of its samples.
+Rgb trace_pass(const render::Integrator& integrator, const render::SamplePlan& plan, std::uint64_t seed,
+               std::size_t place, int pass, std::array<int, 2> at) {
   std::vector<Rgb> planes(integrator.planes().size());
   render::Noticed noticed;
   noticed.seen.resize(integrator.lights());
-  Rgb sum, squares;
+  const std::uint64_t stream = (static_cast<std::uint64_t>(place) << 24) + static_cast<std::uint64_t>(pass);
+  for (int sample = 0; sample < plan.samples_per_pass; ++sample) {
+    render::Sampler sampler(seed, stream, static_cast<std::uint32_t>(sample));
+    integrator.trace(Vec2{at[0] - 0.5, at[1] - 0.5} + sampler.two(), sampler, planes, noticed);
+  }
+  return planes[0] / plan.samples_per_pass;
+}
+
+// Sums over the passes of all pixels of a picture become means and their variances.
+void trace_picture(const render::Integrator& integrator, const scene::View& view, const render::SamplePlan& plan,
+                   std::uint64_t seed, TracedPixels& picture) {
+  const std::size_t count = picture.at.size();
+  std::vector<Rgb> sum(count), squares(count);
+  const int width = view.camera.width_px(), height = view.camera.height_px();
+  const std::uint64_t photons = photons_per_path * count * static_cast<unsigned>(plan.samples_per_pass);
   for (int pass = 0; pass < plan.passes; ++pass) {
-    const std::uint64_t stream = (static_cast<std::uint64_t>(place) << 24) + static_cast<std::uint64_t>(pass);
-    std::fill(planes.begin(), planes.end(), Rgb{});
-    for (int sample = 0; sample < plan.samples_per_pass; ++sample) {
-      render::Sampler sampler(seed, stream, static_cast<std::uint32_t>(sample));
-      integrator.trace(Vec2{x - 0.5, y - 0.5} + sampler.two(), sampler, planes, noticed);
-    }
-    const Rgb mean = planes[0] / plan.samples_per_pass;
-    sum += mean;
-    squares += mean * mean;
+    std::optional<render::PassSplats> splats;
+    if (integrator.traces_from_lights())
+      integrator.trace_from_lights(split_mix(seed), static_cast<unsigned>(pass) * photons, photons,
+                                   splats.emplace(width, height, integrator.planes().size()));
+    parallel_for(
+        0, count,
+        [&](std::size_t k) {
+          const auto [x, y] = picture.at[k];
+          Rgb mean = trace_pass(integrator, plan, seed, k, pass, picture.at[k]);
+          if (splats)
+            mean += splats->value(
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x), 0);
+          sum[k] += mean, squares[k] += mean * mean;
+        },
+        8);
   }
   const double n = plan.passes;
-  for (int c = 0; c < 3; ++c) {
-    const std::size_t row = 3 * place + static_cast<std::size_t>(c);
-    const double mean = sum[c] / n;
-    picture.radiance[row] = mean;
-    picture.variance[row] = std::max(0.0, squares[c] / n - mean * mean) / (n - 1);
-  }
+  for (std::size_t k = 0; k < count; ++k)
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t row = 3 * k + static_cast<std::size_t>(c);
+      const double mean = sum[k][c] / n;
+      picture.radiance[row] = mean;
+      picture.variance[row] = std::max(0.0, squares[k][c] / n - mean * mean) / (n - 1);
+    }
 }
 
 }  // namespace
 
 bool trace_pixels(const manifest::Document& document, std::vector<TracedPixels>& pictures, double paths,
-                  std::uint64_t seed) {
+                  std::uint64_t seed, Caustics caustics) {
   const scene::Scene scene = scene::build_scene(document);
   const render::RayCaster caster(scene.instances);
   const render::Transport transport{.adaptive = false};
@@ -56,12 +80,11 @@ bool trace_pixels(const manifest::Document& document, std::vector<TracedPixels>&
       render::sample_plan(static_cast<int>(std::clamp(paths / std::max(1.0, pixels), least_spp, most_spp)));
   for (TracedPixels& picture : pictures) {
     const auto integrator = render::path_integrator(scene, picture.entry, caster, transport);
-    if (integrator->traces_from_lights()) return false;
+    if (caustics == Caustics::refused && integrator->traces_from_lights()) return false;
     picture.radiance.assign(3 * picture.at.size(), 0.0);
     picture.variance.assign(3 * picture.at.size(), 0.0);
     const std::uint64_t own = render::seed_of(seed, scene.views[picture.entry].image);
-    parallel_for(
-        0, picture.at.size(), [&](std::size_t k) { trace_one(*integrator, plan, own, k, picture); }, 8);
+    trace_picture(*integrator, scene.views[picture.entry], plan, own, picture);
   }
   return true;
 }

@@ -16,10 +16,13 @@ struct TracedPixels {
   std::vector<double> radiance{}, variance{};  // variance: of the mean, from the scatter of its passes
 };
 
+// Light that only paths from a scene's lamps find (caustics of small lamps): left out of the whole answer, or traced.
+enum class Caustics { refused, traced };
+
 // Fills `radiance` and `variance` of all pictures. `paths`: for all pixels together, some millions a second; the same
 // seed draws the same numbers whatever the scene's values are, so that differences between two states are smooth.
-// False, and nothing is filled: the scene has light that only paths from its lamps find (caustics of small lamps).
+// False, and nothing is filled: the scene has caustics that are refused.
 bool trace_pixels(const manifest::Document& document, std::vector<TracedPixels>& pictures, double paths,
-                  std::uint64_t seed);
+                  std::uint64_t seed, Caustics caustics = Caustics::refused);
 
 }  // namespace gonio::explain::images

@@ -12,7 +12,7 @@ const Mechanism& light_ambient() {
       .source = "irradiance of an open plane: pi times the radiance",
       .stage = "light",
       .target = Target::scene,
-      .domains = {"tables", "images", "stacks"},
+      .domains = {"tables", "images", "stacks", "traced"},
       .parameters = {{.name = "radiance_r",
                       .unit = "W/(m^2 sr)",
                       .neutral = 0,

@@ -26,7 +26,7 @@ const Mechanism& light_position() {
       .source = "near lights calibrated from highlights: Ackermann, Fuhrmann & Goesele 2013",
       .stage = "light",
       .target = Target::light,
-      .domains = {"images", "outlines"},
+      .domains = {"images", "outlines", "traced"},
       .parameters = {along("shift_x_m", "by which the lamp stands further along the world's x"),
                      along("shift_y_m", "by which the lamp stands further along the world's y"),
                      along("shift_z_m", "by which the lamp stands further along the world's z")},

@@ -12,7 +12,7 @@ const Mechanism& geometry_pose() {
       .source = "Rodrigues 1840",
       .stage = "geometry",
       .target = Target::object,
-      .domains = {"images", "tables", "outlines"},
+      .domains = {"images", "tables", "outlines", "traced"},
       .parameters = {{.name = "shift_x_m",
                       .unit = "m",
                       .neutral = 0,

@@ -13,7 +13,7 @@ const Mechanism& volume_absorption() {
       .source = "Bouguer 1729, Beer 1852",
       .stage = "transport",
       .target = Target::surface,
-      .domains = {"tables"},
+      .domains = {"tables", "traced"},
       .parameters = {{.name = "sigma_a_per_m",
                       .unit = "1/m",
                       .neutral = 0,

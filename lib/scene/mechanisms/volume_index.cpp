@@ -13,7 +13,7 @@ const Mechanism& volume_index() {
       .source = "Snell 1621; Fresnel 1823",
       .stage = "transport",
       .target = Target::surface,
-      .domains = {"tables"},
+      .domains = {"tables", "traced"},
       .parameters = {{.name = "shift",
                       .unit = "1",
                       .neutral = 0,
