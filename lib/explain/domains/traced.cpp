@@ -47,6 +47,7 @@ const Domain& traced() {
       .order = 10,
       .after = "images",
       .applies = explain::traced::wants_tracing,
+      .within_reach = explain::traced::check_reach,
       .problems =
           [](const manifest::Document& document, const ProblemOptions& options) {
             std::vector<std::unique_ptr<Problem>> problems;

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
 #include "relighting/recordings.h"
+#include "render/link.h"
 
 namespace gonio::mechanism {
 const Mechanism& surface_subsurface();
@@ -66,6 +68,19 @@ bool wants_tracing(const manifest::Document& document) {
 }
 bool beyond_the_fast_model(const manifest::Document& document) {
   return any(document, Kind::beyond);
+}
+
+std::vector<std::string> behind_the_lens(const manifest::Document& document) {
+  std::vector<std::string> ids;
+  for (const render::Link* link : render::all_links())
+    if (document.mechanisms.contains(link->mechanism().id)) ids.push_back(link->mechanism().id);
+  return ids;
+}
+void check_reach(const manifest::Document& document) {
+  const std::vector<std::string> ids = behind_the_lens(document);
+  if (!ids.empty())
+    throw Error(Exit::data, manifest::place(document, "/mechanisms/" + ids[0]),
+                "acts behind the lens, where explain does not follow light that it traces", "leave it out");
 }
 
 }  // namespace gonio::explain::traced

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "explain/traced/layer_steps.h"
+#include "explain/traced/takes.h"
 #include "explain/traced/traced_model.h"
 #include "inference/estimable.h"
 #include "manifest/document.h"
@@ -24,7 +25,7 @@ constexpr std::size_t most_drawn = 4;
 class TracedProblem final : public Problem {
  public:
   TracedProblem(const manifest::Document& document, const Options& options)
-      : model_(document, options.repeats, options.pixels, options.paths) {
+      : left_out_(behind_the_lens(document)), model_(document, options.repeats, options.pixels, options.paths) {
     if (model_.sampled().pixels.empty())
       throw Error(Exit::data, manifest::place(document, "/images"), "no picture shows the object", "check the poses");
     observe();
@@ -65,6 +66,11 @@ class TracedProblem final : public Problem {
   bool outliers_are_effects() const override { return true; }
   double fit_tolerance() const override { return 1e-6; }
 
+  std::string remarks(const Explanation&) const override {
+    std::string text;
+    for (const std::string& id : left_out_) text += (text.empty() ? "" : ", ") + id;
+    return text.empty() ? "" : "What acts behind the lens (" + text + ") is left out here.";
+  }
   void apply(const Explanation& e, manifest::Document& document) const override {
     std::vector<std::size_t> named;
     for (const std::size_t c : e.named) named.push_back(question_of_[c]);
@@ -179,6 +185,7 @@ class TracedProblem final : public Problem {
     return groups.size() + 1 == sampled.first.size() ? std::vector<std::size_t>{} : groups;
   }
 
+  std::vector<std::string> left_out_;
   TracedModel model_;
   std::vector<std::size_t> question_of_;  // of a candidate
 };

@@ -21,7 +21,7 @@ const Mechanism& surface_directional_subsurface() {
                       .upper = 1.5,
                       .start = 0.5,
                       .typical = 1,
-                      .meaning = "1: as the directional dipole has it"}},
+                      .meaning = "share of what the directional dipole adds"}},
       .conditions = {"surface.incidence-angle"},
       .mistaken_for = {{.with = "surface.subsurface", .told_apart = "a narrow beam that falls in aslant"}},
   };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "data.h"
@@ -108,6 +109,18 @@ TEST(Traced, TakesGlassFromTheFastModel) {
     if (domain->name == "images" || domain->name == "traced") {
       EXPECT_EQ(domain->applies(document), domain->name == "traced") << domain->name;
     }
+}
+
+TEST(Traced, WhatActsBehindTheLensIsSaidToBeOutOfReach) {
+  const tests::ScratchFolder folder;
+  std::string text = glass_manifest(clear);
+  text.insert(text.size() - 1, R"(,"mechanisms":{"sensor.black-offset":{"offset":0.01}})");
+  try {
+    check_reach(manifest::parse_document(text, "glass.json", folder.path()));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("glass.json#/mechanisms/sensor.black-offset: acts behind the lens"));
+  }
 }
 
 TEST(Traced, OnePictureIsCutIntoGroupsThatShareNoBlock) {
