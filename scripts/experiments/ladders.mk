@@ -8,12 +8,9 @@
 # the recordings, and glass and metal have the shape of fandisk.obj. The bunny
 # has one view, as there, but three lamps: of a single picture nothing can be
 # left out to score a mechanism on, and explain names none.
-# Of these rungs the library of explain has three mechanisms: surface.interface,
-# surface.subsurface and, not for pictures, volume.absorption. It has none for
-# the roughness of glass and metal, for roughness that varies over an object,
-# and for light that spreads on from where it is going (directional dipole).
-# Of the models dipole, directional-dipole and of laws explain simulates the
-# gloss alone, with an even roughness.
+# Glass, mirrors and laws are asked by the path tracer (domain traced), matte and
+# coated things by the fast model (images), metals and bodies of which that knows
+# a part by both, one after the other: what either names counts.
 # SEED draws places, lamps, cameras, the material's numbers and the noise. The
 # rungs were written on seed 1; others are for reports. BUDGET bounds the work
 # of each explain; without it the answers take two to four times as long.

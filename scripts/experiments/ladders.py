@@ -36,7 +36,8 @@ LADDERS = {
                     "alpha": free(0.2, 0.02, 0.6)}),
         ("dipole", "surface.directional-subsurface",
          lambda n: {"model": "coated-diffuse", "albedo": free([0.5, 0.5, 0.5], 0, 1), "f0": F0, "alpha": 0.2}),
-        ("directional", "surface.print-slopes", lambda n: {"model": "directional-dipole", "eta": 1.54, "alpha": 0.2, **n}),
+        ("directional", "surface.print-slopes",
+         lambda n: {"model": "directional-dipole", "eta": 1.54, "alpha": 0.2, **n}),
         ("varying", None, lambda n: {"model": "directional-dipole", "eta": 1.54, **n,
                                      "laws": {"alpha": {"law": "print-normal", "rho": 0.2, "s": 2.4}}}),
     ],
@@ -202,7 +203,7 @@ def rung(case, k, aligned, photographs, lower):
         spread = lower["mechanisms"]["surface.subsurface"]
         paths = [spread[f"mean_free_path_{c}_m"]["value"] for c in "rgb"]
         pairs = [coefficients(a, p, 1.54) for a, p in zip(albedo, paths)]
-        numbers = {"sigma_a_per_m": [p[0] for p in pairs], "sigma_s_per_m": [p[1] for p in pairs]}
+        numbers = {key: free([p[i] for p in pairs], 0, 1e6) for i, key in enumerate(["sigma_a_per_m", "sigma_s_per_m"])}
     if name == "varying" and case == "bunny":
         own = lower["surfaces"]["object"]
         numbers = {key: own[key] for key in ("sigma_a_per_m", "sigma_s_per_m")}
@@ -222,22 +223,29 @@ def mean(comparisons, key):
 
 
 def answer(case, k):
-    """What explain named at a rung, None where it could not answer or says that a mismatch is unknown; and in words."""
+    """What explain named at a rung, by all domains together; None where it could not answer or where none names
+    anything and one says that a mismatch is unknown. And the same in words."""
     try:
-        entry = read(f"run/{case}-{k}-explained.json")["explanations"][-1]
+        entries = read(f"run/{case}-{k}-explained.json")["explanations"]
     except OSError:
         with open(f"run/{case}-{k}-explained.txt") as f:
             return None, "failed: " + f.read().strip().splitlines()[-1]
-    named = [m["mechanism"] for m in entry["named"]]
-    others = [o if isinstance(o, str) else " + ".join(o) for o in sum(entry["not_told_apart"], [])]
-    others = [o for o in dict.fromkeys(others) if o not in named]
-    words = (" + ".join(named) or entry["verdict"]) + "".join(" or " + o for o in others)
-    if "probability" in entry:
-        words += f" ({100 * entry['probability']:.0f} %)"
-    likely = [w for w in entry.get("weighed", []) if w["answer"] == "mechanisms"]
-    if likely and not named:
-        words += f", likeliest {' + '.join(likely[0]['mechanisms'])} ({100 * likely[0]['probability']:.0f} %)"
-    return (named if entry["verdict"] != "unknown" else None), words
+    last = {e["domain"]: e for e in entries}  # earlier ones are of the fit
+    named, words = [], []
+    for domain, entry in last.items():
+        own = [m["mechanism"] for m in entry["named"]]
+        others = [o if isinstance(o, str) else " + ".join(o) for o in sum(entry["not_told_apart"], [])]
+        others = [o for o in dict.fromkeys(others) if o not in own]
+        text = domain + ": " + (" + ".join(own) or entry["verdict"]) + "".join(" or " + o for o in others)
+        if "probability" in entry:
+            text += f" ({100 * entry['probability']:.0f} %)"
+        likely = [w for w in entry.get("weighed", []) if w["answer"] == "mechanisms"]
+        if likely and not own:
+            text += f", likeliest {' + '.join(likely[0]['mechanisms'])} ({100 * likely[0]['probability']:.0f} %)"
+        named += own
+        words.append(text)
+    unknown = any(e["verdict"] == "unknown" for e in last.values())
+    return (None if unknown and not named else named), "; ".join(words)
 
 
 def table(cases):

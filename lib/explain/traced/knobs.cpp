@@ -157,10 +157,6 @@ class Declaration : private KnobBuilder {
     const auto* info = info_of(surface, key);
     const double lower = stated.min.value_or(info ? info->lower : 0),
                  upper = stated.max.value_or(info ? info->upper : 1);
-    const auto write = [id = surface.id, key](Document& d, Values v, Values sigma) {
-      d.surfaces.at(id).parameters.at(key).value.assign(v.begin(), v.end());
-      d.surfaces.at(id).sigma[key].assign(sigma.begin(), sigma.end());
-    };
     if (key == "alpha" && asked != all_.surfaces.end() && asked->rough) {
       const auto a = static_cast<std::size_t>(asked - all_.surfaces.begin());
       const std::size_t k = knob(plain(name, "1", asked->stated.alpha, std::max(lower, asked->stated.lower),
@@ -171,24 +167,42 @@ class Declaration : private KnobBuilder {
     }
     std::vector<std::size_t> knobs;
     const std::size_t count = stated.value.size();
-    // Colours do not mix: one series of pictures serves all three where they begin alike.
     const bool alike = std::ranges::all_of(stated.value, [&](double v) { return v == stated.value[0]; });
-    std::size_t response = 0;
-    for (std::size_t c = 0; c < count; ++c) {
-      const double value = stated.value[c];
-      if (c == 0 || !alike)
-        response =
-            respond(nodes_about(value, lower, upper), value, [id = surface.id, key, c, alike](Document& d, double x) {
-              auto& v = d.surfaces.at(id).parameters.at(key).value;
-              for (std::size_t i = 0; i < v.size(); ++i)
-                if (alike || i == c) v[i] = x;
-            });
+    if (count > 1 && !alike) return free_colour(surface.id, key, stated);
+    const double value = stated.value[0];
+    const std::size_t response =
+        respond(nodes_about(value, lower, upper), value, [id = surface.id, key](Document& d, double x) {
+          for (double& v : d.surfaces.at(id).parameters.at(key).value) v = x;
+        });
+    for (std::size_t c = 0; c < count; ++c) {  // colours do not mix: one series of pictures serves all three
       Parameter p = plain(name + (count > 1 ? std::string("/") + "rgb"[c] : ""), info ? info->unit : "1", value, lower,
                           upper, 0.02 * std::max(0.05, std::abs(value)));
       within_nodes(p, all_.responses[response].nodes);
       knobs.push_back(knob(std::move(p), Acts::adds, response, count > 1 ? static_cast<int>(c) : -1));
     }
-    ask(nullptr, {}, knobs).write = write;
+    ask(nullptr, {}, knobs).write = [id = surface.id, key](Document& d, Values v, Values sigma) {
+      d.surfaces.at(id).parameters.at(key).value.assign(v.begin(), v.end());
+      d.surfaces.at(id).sigma[key].assign(sigma.begin(), sigma.end());
+    };
+  }
+  // Three numbers that begin apart: a factor on each, in one series of pictures.
+  void free_colour(const std::string& id, const std::string& key, const manifest::Parameter& stated) {
+    const std::vector<double> nodes{0.4, 0.7, 1, 1.4, 2.2};
+    const std::size_t response = respond(nodes, 1, [id, key](Document& d, double x) {
+      for (double& v : d.surfaces.at(id).parameters.at(key).value) v *= x;
+    });
+    std::vector<std::size_t> knobs;
+    for (std::size_t c = 0; c < stated.value.size(); ++c)
+      knobs.push_back(knob(
+          plain("surfaces/" + id + "/" + key + "/" + "rgb"[c] + "/factor", "1", 1, nodes.front(), nodes.back(), 0.02),
+          Acts::adds, response, static_cast<int>(c)));
+    ask(nullptr, {}, knobs).write = [id, key](Document& d, Values v, Values sigma) {
+      manifest::Surface& surface = d.surfaces.at(id);
+      std::vector<double>& value = surface.parameters.at(key).value;
+      surface.sigma[key].clear();
+      for (std::size_t c = 0; c < value.size(); ++c)
+        surface.sigma[key].push_back(std::abs(value[c]) * sigma[c]), value[c] *= v[c];
+    };
   }
 
   void free_mechanisms() {
