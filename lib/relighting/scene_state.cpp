@@ -92,6 +92,11 @@ std::size_t parameter_index(const surface::Model& model, const std::string& name
   throw Error(Exit::internal, "surface " + model.info().id, "has no parameter \"" + name + "\"");
 }
 
+bool knows_lights(const manifest::Document& document) {
+  return std::ranges::all_of(lights_of_recordings(document),
+                             [&](const std::string& name) { return is_known(document.lights.at(name)); });
+}
+
 void check_lights(const manifest::Document& document) {
   for (const std::string& name : lights_of_recordings(document))
     if (!is_known(document.lights.at(name))) refuse_light(document, name);

@@ -47,7 +47,8 @@ struct SceneLayout {
   SceneState start;                   // as the manifest has it, its mechanisms included
 };
 
-// Error(data) where a light that was on in a recording has a model that is not simulated here.
+// Has every light that was on in a recording a model that is simulated here? Error(data) where one has not.
+bool knows_lights(const manifest::Document& document);
 void check_lights(const manifest::Document& document);
 
 SceneLayout read_scene(const manifest::Document& document, const Recordings& recordings,

@@ -48,9 +48,11 @@ std::vector<float> photograph(const manifest::Document& document, bool stokes = 
 bool concerns_pictures(const Mechanism& m) {
   const auto is_for = [&](const char* domain) { return std::ranges::find(m.domains, domain) != m.domains.end(); };
   const bool lens = m.stage == "lens" && m.target == Target::camera;
-  // Acts through columns, height maps, tracks, volumes or clouds, which no picture has.
+  // Acts through columns, height maps, tracks, volumes or clouds, which no picture has, or on glass and prints, which
+  // are not here: what is traced is written into the surfaces themselves.
   const bool tables_alone = !m.domains.empty() && std::ranges::all_of(m.domains, [](const std::string& domain) {
-    return domain == "tables" || domain == "heights" || domain == "nrsfm" || domain == "volumes" || domain == "clouds";
+    return domain == "tables" || domain == "heights" || domain == "nrsfm" || domain == "volumes" ||
+           domain == "clouds" || domain == "traced";
   });
   return lens || is_for("images") || !(is_for("boards") || is_for("robot") || tables_alone);
 }

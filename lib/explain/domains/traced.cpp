@@ -46,6 +46,7 @@ const Domain& traced() {
       .sentence = "linear images of glass, metal and translucent bodies, and of roughness that varies",
       .order = 10,
       .after = "images",
+      .objects = explain::traced::traced_objection,
       .applies = explain::traced::wants_tracing,
       .within_reach = explain::traced::check_reach,
       .problems =

@@ -68,8 +68,11 @@ Question& KnobBuilder::ask(const mechanism::Mechanism* mechanism, std::vector<st
 
 void KnobBuilder::of_surface(std::size_t a) {
   const scene::Surface& surface = scene_.appearance.surfaces[all_.surfaces[a].surface];
-  if (surface.model->transmits() && info_of(surface, "sigma_a_per_m")) absorption(surface);
-  if (surface.model->transmits() && info_of(surface, "eta")) index(surface);
+  const auto one_number = [&](const char* name) {  // by the manifest, not band by band from a file
+    return surface.model->transmits() && info_of(surface, name) && !surface.spectra.contains(name);
+  };
+  if (one_number("sigma_a_per_m")) absorption(surface);
+  if (one_number("eta")) index(surface);
   if (surface.model->info().id == "dipole") directional(surface);
   if (all_.surfaces[a].rough) roughness(a);
 }

@@ -9,6 +9,7 @@
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
 #include "relighting/recordings.h"
+#include "relighting/scene_state.h"
 #include "render/link.h"
 
 namespace gonio::mechanism {
@@ -46,7 +47,7 @@ Kind kind_of(const manifest::Document& document, const std::string& name) {
 }
 
 bool any(const manifest::Document& document, Kind least) {
-  return relighting::has_recordings(document) &&
+  return relighting::has_recordings(document) && relighting::knows_lights(document) &&
          std::ranges::any_of(document.objects, [&](const manifest::Object& object) {
            return kind_of(document, object.surface) >= least;
          });

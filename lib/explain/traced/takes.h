@@ -12,7 +12,8 @@ namespace gonio::explain::traced {
 // and what follows a law over the object. Places in scene.appearance.surfaces.
 std::vector<std::size_t> surfaces_in_question(const manifest::Document& document, const scene::Scene& scene);
 
-// Has the document recordings of such surfaces? By what it says, without building the scene.
+// Has the document recordings of such surfaces, under lamps (surroundings are asked by nobody yet)? By what it says,
+// without building the scene.
 bool wants_tracing(const manifest::Document& document);
 // Of those that the fast model cannot be asked of at all: glass, laws, mirrors, bodies by models of their own.
 bool beyond_the_fast_model(const manifest::Document& document);

@@ -9,6 +9,7 @@
 #include "explain/images/traced.h"
 #include "explain/traced/takes.h"
 #include "manifest/document.h"
+#include "manifest/sections/surface.h"
 #include "relighting/repeats.h"
 
 namespace gonio::explain::traced {
@@ -163,6 +164,22 @@ void TracedModel::predict(std::span<const double> values, std::size_t group, std
   }
 }
 
+// With its sigma where it is one number: of what is `more` by its slope.
+void TracedModel::write_roughness(std::span<const double> values, std::span<const double> sigmas, std::size_t surface,
+                                  manifest::Document& document) const {
+  const Roughness r = roughness_of(values, surface);
+  r.write(document, knobs_.surfaces[surface].name);
+  manifest::Surface& entry = document.surfaces.at(knobs_.surfaces[surface].name);
+  if (sigmas.empty() || entry.laws.contains("alpha")) return;
+  double variance = 0;
+  for (std::size_t k = 0; k < knobs_.knobs.size(); ++k) {
+    if (knobs_.knobs[k].surface != surface) continue;
+    const double of = knobs_.knobs[k].acts == Acts::alpha ? r.alpha : knobs_.knobs[k].acts == Acts::more ? r.more : 0;
+    if (r.even() > 0) variance += std::pow(of / r.even() * sigmas[k], 2);
+  }
+  entry.sigma["alpha"] = {std::sqrt(variance)};
+}
+
 void TracedModel::write(std::span<const double> values, std::span<const double> sigmas,
                         std::span<const std::size_t> named, bool all, manifest::Document& document) const {
   std::vector<double> v, s;
@@ -184,7 +201,7 @@ void TracedModel::write(std::span<const double> values, std::span<const double> 
     bool any = false;
     for (std::size_t k = 0; k < knobs_.knobs.size(); ++k)
       any = any || (in_play[k] && knobs_.knobs[k].acts >= Acts::alpha && knobs_.knobs[k].surface == a);
-    if (any) roughness_of(values, a).write(document, knobs_.surfaces[a].name);
+    if (any) write_roughness(values, sigmas, a, document);
   }
 }
 

@@ -49,6 +49,8 @@ class TracedModel {
 
  private:
   double mean_roughness(const Roughness& roughness, std::size_t surface) const;
+  void write_roughness(std::span<const double> values, std::span<const double> sigmas, std::size_t surface,
+                       manifest::Document& document) const;
   Roughness roughness_of(std::span<const double> values, std::size_t surface) const;
 
   std::unique_ptr<manifest::Document> document_;

@@ -14,6 +14,10 @@
 #include "manifest/document.h"
 #include "report/colour_map.h"
 
+namespace gonio::mechanism {
+const Mechanism& surface_directional_subsurface();
+}
+
 namespace gonio::explain::traced {
 namespace {
 
@@ -233,6 +237,16 @@ Illustration TracedProblem::illustrate(const Explanation& e, const std::filesyst
 }
 
 }  // namespace
+
+std::optional<Testimony> traced_objection(const Problem& problem, const Explanation& e, std::size_t candidate) {
+  constexpr double least_share = 0.5;
+  const Candidate& c = problem.candidates()[candidate];
+  if (c.mechanism != &mechanism::surface_directional_subsurface()) return {};
+  Testimony t{.by = "the model, which is there as a whole or not at all,", .quantity = "its share", .unit = "1"};
+  t.before = 1, t.after = e.values[c.parameters[0]];
+  t.refuted = t.after < least_share;
+  return t;
+}
 
 std::unique_ptr<Problem> traced_problem(const manifest::Document& document, const Options& options) {
   return std::make_unique<TracedProblem>(document, options);

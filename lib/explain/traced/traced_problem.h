@@ -11,8 +11,10 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "explain/domain.h"
 #include "explain/engine.h"
 #include "manifest/sections/forward.h"
 
@@ -23,6 +25,8 @@ struct Options {
   std::size_t pixels = 1800;                     // in all pictures together
   double paths = 4e6;                            // of the scene as it was given, in all pictures together
 };
+// A scene has the directional dipole or the standard one: a small share of it is something else's.
+std::optional<Testimony> traced_objection(const Problem& problem, const Explanation& e, std::size_t candidate);
 std::unique_ptr<Problem> traced_problem(const manifest::Document& document, const Options& options = {});
 
 }  // namespace gonio::explain::traced

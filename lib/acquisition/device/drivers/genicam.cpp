@@ -159,11 +159,15 @@ class GenicamCamera : public CameraDevice, AravisCamera {
 
   // As root, aravis reads a raw socket, which hears all that passes from its making until its filter stands: the frames
   // of other cameras were taken for this one's. Its port of UDP hears nothing else, and is what other users get anyway.
+  // A machine that is busy empties that late: its queue holds several frames, where the system lets it (rmem_max).
   void start() {
     if (ARV_IS_GV_DEVICE(device()))
       arv_gv_device_set_stream_options(ARV_GV_DEVICE(device()), ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
     stream_.reset(ask(arv_camera_create_stream, nullptr, nullptr));
     if (!stream_) throw failure("opens no stream", "is its network interface up?");
+    if (ARV_IS_GV_STREAM(stream_.get()))
+      g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", queue_bytes,
+                   nullptr);
     const auto payload = ask(arv_camera_get_payload);
     for (int i = 0; i < 3; ++i) arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));
     count_.restarted();
@@ -325,6 +329,7 @@ class GenicamCamera : public CameraDevice, AravisCamera {
   }
 
   static constexpr double stray_s = 0.2;
+  static constexpr gint queue_bytes = 1 << 25;
   bool in_doubt_ = false;
   std::mutex one_at_a_time_;
   Held<ArvStream> stream_;
