@@ -6,6 +6,7 @@
 
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/surface.h"
+#include "scene/model_choice.h"
 
 namespace gonio::mechanism {
 const Mechanism& surface_directional_subsurface();
@@ -29,14 +30,9 @@ const std::vector<double> absorbing{0, 3, 12, 40, 120}, indices{-0.06, -0.02, 0,
 
 }  // namespace
 
-const manifest::ParameterInfo* info_of(const scene::Surface& surface, const std::string& name) {
-  for (const manifest::ParameterInfo& p : surface.model->info().parameters)
-    if (p.name == name) return &p;
-  return nullptr;
-}
 std::vector<double> stated_of(const scene::Surface& surface, const std::string& name) {
   const auto& own = surface.model->info().parameters;
-  const auto at = static_cast<std::size_t>(info_of(surface, name) - own.data());
+  const auto at = static_cast<std::size_t>(scene::find_parameter(surface.model->info(), name) - own.data());
   const Rgb v = surface.values.rgb(at);
   return own[at].components == 1 ? std::vector{v.x} : std::vector{v.x, v.y, v.z};
 }
@@ -69,7 +65,8 @@ Question& KnobBuilder::ask(const mechanism::Mechanism* mechanism, std::vector<st
 void KnobBuilder::of_surface(std::size_t a) {
   const scene::Surface& surface = scene_.appearance.surfaces[all_.surfaces[a].surface];
   const auto one_number = [&](const char* name) {  // by the manifest, not band by band from a file
-    return surface.model->transmits() && info_of(surface, name) && !surface.spectra.contains(name);
+    return surface.model->transmits() && scene::find_parameter(surface.model->info(), name) &&
+           !surface.spectra.contains(name);
   };
   if (one_number("sigma_a_per_m")) absorption(surface);
   if (one_number("eta")) index(surface);

@@ -9,8 +9,7 @@
 
 namespace gonio::explain::traced {
 
-// Of the surface's model; null where it has no such number.
-const manifest::ParameterInfo* info_of(const scene::Surface& surface, const std::string& name);
+// What the surface has in the scene, of a number that its model has.
 std::vector<double> stated_of(const scene::Surface& surface, const std::string& name);
 
 class KnobBuilder {

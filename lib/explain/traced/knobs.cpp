@@ -12,6 +12,7 @@
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
+#include "scene/model_choice.h"
 
 namespace gonio::mechanism {
 const Mechanism& geometry_pose();
@@ -67,9 +68,8 @@ class Declaration : private KnobBuilder {
     const bool varies = entry.laws.contains("alpha") || entry.textures.contains("alpha") ||
                         entry.vertices.contains("alpha") || entry.labels.contains("alpha");
     // By the bounds of the model that the manifest names, whatever mechanisms made of it.
-    const auto& own = surface::find(entry.model)->info().parameters;
-    const auto alpha = std::ranges::find(own, "alpha", &manifest::ParameterInfo::name);
-    if (alpha != own.end() && info_of(surface, "alpha") && !varies) {
+    const auto* alpha = scene::find_parameter(surface::find(entry.model)->info(), "alpha");
+    if (alpha != nullptr && scene::find_parameter(surface.model->info(), "alpha") && !varies) {
       a.rough = true;
       a.stated.alpha = stated_of(surface, "alpha")[0];
       a.stated.lower = alpha->lower, a.stated.upper = std::min(1.0, alpha->upper);
@@ -154,7 +154,7 @@ class Declaration : private KnobBuilder {
   void free_number(const scene::Surface& surface, const std::string& key, const manifest::Parameter& stated) {
     const std::string name = "surfaces/" + surface.id + "/" + key;
     const auto asked = std::ranges::find(all_.surfaces, surface.id, &Asked::name);
-    const auto* info = info_of(surface, key);
+    const auto* info = scene::find_parameter(surface.model->info(), key);
     const double lower = stated.min.value_or(info ? info->lower : 0),
                  upper = stated.max.value_or(info ? info->upper : 1);
     if (key == "alpha" && asked != all_.surfaces.end() && asked->rough) {

@@ -21,12 +21,10 @@ namespace {
 
 enum class Kind { plain, both, beyond };  // for the fast model alone, for both, for the tracer alone
 
-bool has(const surface::Model& model, const char* name) {
-  return std::ranges::any_of(model.info().parameters, [&](const manifest::ParameterInfo& p) { return p.name == name; });
-}
 // What has a roughness and neither a colour beneath nor an inside.
 bool is_metal(const surface::Model& model) {
-  return has(model, "alpha") && !has(model, "albedo") && !has(model, "sigma_a_per_m") && !model.transmits();
+  return relighting::has_parameter(model, "alpha") && !relighting::has_parameter(model, "albedo") &&
+         !relighting::has_parameter(model, "sigma_a_per_m") && !model.transmits();
 }
 
 Kind kind_of(const manifest::Document& document, const std::string& name) {
@@ -36,7 +34,7 @@ Kind kind_of(const manifest::Document& document, const std::string& name) {
   const surface::Model* model = surface::find(surface.model);
   if (model == nullptr) return Kind::plain;
   if (model->transmits() || surface.laws.contains("alpha")) return Kind::beyond;
-  if (has(*model, "sigma_s_per_m")) return Kind::beyond;
+  if (relighting::has_parameter(*model, "sigma_s_per_m")) return Kind::beyond;
   const auto alpha = surface.parameters.find("alpha");
   if (is_metal(*model))
     return alpha != surface.parameters.end() && alpha->second.scalar() < 0.02 ? Kind::beyond : Kind::both;

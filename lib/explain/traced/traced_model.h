@@ -42,8 +42,7 @@ class TracedModel {
   const relighting::Recordings& recordings() const { return recordings_; }
   const Knobs& knobs() const { return knobs_; }
   const Traced& stated() const { return stated_; }
-  double height_m(std::size_t pixel) const { return sampled_.pixels[pixel].here.position_m.z; }
-  // Where the steps of layers are looked for: what roughness changes in a row, per unit.
+  // What roughness changes in a row, per unit of alpha.
   double slope_of_roughness(std::size_t surface, std::size_t row) const;
   void begin_layers(std::size_t surface, double layer_m, double offset_m);
 
