@@ -6,8 +6,7 @@
 # rung adds, and nothing at the top (run/*-explained.html).
 # The prints and the bust of the thesis are in no data set: the bunny is that of
 # the recordings, and glass and metal have the shape of fandisk.obj. The bunny
-# has one view, as there, but three lamps: of a single picture the fast model
-# can leave nothing out to score a mechanism on, and names none.
+# has one view, as there, but three lamps.
 # Glass, mirrors and laws are asked by the path tracer (domain traced), matte and
 # coated things by the fast model (images), metals and bodies of which that knows
 # a part by both, one after the other: what either names counts.

@@ -138,9 +138,13 @@ Illustration ImagesProblem::illustrate(const Explanation& explanation, const std
   for (Use& use : uses)
     if (use.term->prepare && !use.neutral(after)) use.prepared = use.term->prepare(setting, use);
   model.take_uses(*model_, std::move(uses));
-  std::vector<std::string> worst;  // names of the groups that hold most of the excess
-  for (std::size_t k = 0; k < std::min(most_pictures, explanation.groups.size()); ++k)
-    worst.push_back(explanation.groups[k].name);
+  std::vector<std::string> worst;  // images that hold most of the excess
+  for (const LocatedGroup& group : explanation.groups) {
+    const auto g =
+        static_cast<std::size_t>(std::ranges::find(observations_.group, group.name) - observations_.group.begin());
+    const std::string& id = recordings_.images[groups_[g].image].id;
+    if (worst.size() < most_pictures && std::ranges::count(worst, id) == 0) worst.push_back(id);
+  }
   std::vector<std::vector<Picture>> pictures(worst.size());
   const bool named = !explanation.named.empty();
   result.seen_at_once = named ? 3 : 2;

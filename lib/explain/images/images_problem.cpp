@@ -70,6 +70,7 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   monomials_ = std::make_unique<render::Monomials>(surfaces.size(), degree_for(surfaces.size()));
   std::vector<std::vector<std::array<int, 2>>> chosen(recordings_.views.size());
   choose_pixels(options.pixels, chosen);
+  cut_into_cells(chosen);
   const Tints tints(scene);
   std::vector<ViewCache> caches;
   cache_options_.shadows = layout_.lights.size() <= most_lamps_with_shadows;
@@ -81,6 +82,7 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
   bind(document);
   fill_rows();
+  numbers_act_on_cells();
   misplaced_ = misplaced_files(recordings_, *model_, picked_);
   if (misplaced_.files.empty()) misplaced_ = misread(*scene_, *model_);
   if (!misplaced_.files.empty()) candidates_.clear();  // no physics is fitted to pictures of something else
@@ -178,8 +180,8 @@ void ImagesProblem::fill_rows() {
   for (std::size_t g = 0; g < recordings_.images.size(); ++g) {
     const Recording& image = recordings_.images[g];
     const ViewCache& cache = model_->cache(image.view);
-    std::map<std::pair<int, int>, std::uint32_t> tiles;
-    std::vector<std::uint32_t> mine;
+    std::map<std::array<int, 3>, std::uint32_t> tiles;  // of a cell
+    std::vector<std::uint32_t>& mine = picked_.emplace_back();
     for (std::uint32_t p = 0; p < cache.pixels.size(); ++p)
       if (image.counts[at(image.picture, cache.pixels[p].x, cache.pixels[p].y)] &&
           !shows_glass(cache, cache.pixels[p], layout_.start))
@@ -202,7 +204,8 @@ void ImagesProblem::fill_rows() {
     for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] *= scale[i % 3];
     for (std::size_t i = 0; i < mine.size(); ++i) {
       const Pixel& pixel = cache.pixels[mine[i]];
-      const auto [tile, fresh] = tiles.try_emplace({pixel.x / tile_px, pixel.y / tile_px}, blocks);
+      const int cell = cell_of_.empty() ? 0 : static_cast<int>(cell_of_[image.view][mine[i]]);
+      const auto [tile, fresh] = tiles.try_emplace({pixel.x / tile_px, pixel.y / tile_px, cell}, blocks);
       if (fresh) ++blocks;
       const Rgb mean = local_mean(image, pixel.x, pixel.y);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -220,9 +223,7 @@ void ImagesProblem::fill_rows() {
       }
     }
     if (shared_.edges) shared_.edges->of_image[g] = std::move(slopes);
-    o.first.push_back(o.value.size());
-    o.group.push_back(image.id);
-    picked_.push_back(std::move(mine));
+    open_groups(g);
   }
   o.conditions = image_conditions(*model_, picked_, prediction, across);
 }
@@ -238,7 +239,14 @@ SceneState ImagesProblem::state(std::span<const double> values, std::size_t imag
 }
 
 void ImagesProblem::predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const {
-  model_->predict(raw_state(values), group, picked_[group], prediction);
+  const Group& g = groups_[group];
+  if (g.whole) return model_->predict(raw_state(values), g.image, picked_[g.image], prediction);
+  const auto all = whole_predictions_.of(values, {}, g.image, [&] {
+    std::vector<double> made(3 * picked_[g.image].size());
+    model_->predict(raw_state(values), g.image, picked_[g.image], made);
+    return made;
+  });
+  std::copy_n(all->begin() + static_cast<std::ptrdiff_t>(g.first), g.end - g.first, prediction.begin());
 }
 
 namespace {
@@ -258,8 +266,24 @@ bool acts_on(const Parameter& p, std::size_t group) {
 
 void ImagesProblem::jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                              std::span<double> derivatives) const {
-  const std::size_t rows = 3 * picked_[group].size();
-  const Derivatives near(*model_, raw_state(values), group, picked_[group]);
+  const Group& g = groups_[group];
+  if (g.whole) return slopes_of_image(values, group, columns, derivatives);
+  const std::size_t all_rows = 3 * picked_[g.image].size(), rows = g.end - g.first;
+  const auto all = whole_slopes_.of(values, columns, g.image, [&] {
+    std::vector<double> made(all_rows * columns.size());
+    slopes_of_image(values, group, columns, made);
+    return made;
+  });
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    std::copy_n(all->begin() + static_cast<std::ptrdiff_t>(k * all_rows + g.first), rows,
+                derivatives.begin() + static_cast<std::ptrdiff_t>(k * rows));
+}
+
+// Of all rows of the group's image.
+void ImagesProblem::slopes_of_image(std::span<const double> values, std::size_t group,
+                                    std::span<const std::size_t> columns, std::span<double> derivatives) const {
+  const std::size_t image = groups_[group].image, rows = 3 * picked_[image].size();
+  const Derivatives near(*model_, raw_state(values), image, picked_[image]);
   std::vector<double> above(rows), below(rows);
   std::size_t filled = 0;  // columns before this one
   for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -2,8 +2,9 @@
 // between surfaces and the registered mechanisms.
 //
 // Rows: sampled pixels (a fixed number per tile of 8 x 8, drawn at random with a fixed seed), three channels each.
-// Groups: images, one for each camera pose and light. Blocks: tiles. The score is the relative RMSE. Noise of a row:
-// the recording's, at the local mean of the picture, plus the simulator's own variance.
+// Groups: images, one for each camera pose and light; of one or two images alone their cells (relighting/cells.h), so
+// that of these too something can be left out. Blocks: tiles. The score is the relative RMSE. Noise of a row: the
+// recording's, at the local mean of the picture, plus the simulator's own variance.
 #pragma once
 #include <memory>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "explain/engine.h"
 #include "explain/images/bindings.h"
+#include "explain/images/cell_memo.h"
 #include "explain/images/model.h"
 #include "relighting/recordings.h"
 #include "render/ray_caster.h"
@@ -40,7 +42,7 @@ class ImagesProblem final : public Problem {
   std::string domain() const override { return "images"; }
   std::string unit() const override { return "1"; }
   std::string score_name() const override { return "relative RMSE"; }
-  std::string group_noun() const override { return "image"; }
+  std::string group_noun() const override { return groups_.size() > recordings_.images.size() ? "cell" : "image"; }
   Importance importance() const override { return Importance::share_of_signal; }
   bool outliers_are_effects() const override { return true; }
   inference::Simulator simulator() const override { return inference::Simulator::errs; }
@@ -57,17 +59,26 @@ class ImagesProblem final : public Problem {
 
   const Recordings& recordings() const { return recordings_; }
   const Bindings& bindings() const { return bindings_; }
-  const std::vector<std::uint32_t>& picked(std::size_t group) const { return picked_[group]; }
+  const std::vector<std::uint32_t>& picked(std::size_t image) const { return picked_[image]; }
   const ImageModel& model() const { return *model_; }
   // The scene that the values amount to, as one image is simulated with it.
   SceneState state(std::span<const double> values, std::size_t image = 0) const;
 
  private:
+  struct Group {  // an image or one of its cells: rows first ... end - 1 of the image's
+    std::size_t image = 0, first = 0, end = 0;
+    bool whole = true;
+  };
   SceneState raw_state(std::span<const double> values) const;
+  void slopes_of_image(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
+                       std::span<double> derivatives) const;
   void bind(const manifest::Document& document);
   void find_exclusions();
   void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
+  void cut_into_cells(std::vector<std::vector<std::array<int, 2>>>& chosen);
   void fill_rows();
+  void open_groups(std::size_t image);
+  void numbers_act_on_cells();
 
   std::unique_ptr<manifest::Document> document_;  // as it was given
   Recordings recordings_;
@@ -80,7 +91,10 @@ class ImagesProblem final : public Problem {
   std::unique_ptr<render::RayCaster> caster_;
   std::unique_ptr<ImageModel> model_;
   Shared shared_;
-  std::vector<std::vector<std::uint32_t>> picked_;  // per image: places in its view's cache, ascending
+  std::vector<std::vector<std::uint32_t>> picked_;   // per image: places in its view's cache, ascending
+  std::vector<std::vector<std::uint32_t>> cell_of_;  // per view and place in its cache; empty: views are not cut
+  std::vector<Group> groups_;
+  CellMemo whole_predictions_, whole_slopes_;
   Misplaced misplaced_;
 };
 

@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "mesh/curvature.h"
+#include "relighting/cells.h"
 #include "render/camera_ray.h"
 #include "render/vertex.h"
 
@@ -16,7 +17,7 @@ namespace gonio::explain::traced {
 namespace {
 
 constexpr int tile_px = 8;
-constexpr std::size_t least_groups = 8, wanted_groups = 12, least_in_group = 40;
+constexpr std::size_t least_groups = 8;
 constexpr std::uint64_t seed = 127;
 constexpr double share_of_objects = 2.0 / 3;
 
@@ -47,10 +48,9 @@ class Chooser {
   Sampled run(std::size_t pixels) {
     Sampled result;
     const std::size_t images = recordings_.images.size();
-    const std::size_t cells = images >= least_groups ? 1 : (wanted_groups + images - 1) / images;
+    const std::size_t cells = relighting::cells_each(images, least_groups);
     for (std::size_t g = 0; g < images; ++g) {
-      std::vector<SampledPixel> mine = of_image(g, std::max<std::size_t>(150, pixels / images));
-      part(mine, std::min(cells, std::max<std::size_t>(1, mine.size() / least_in_group)), g, result);
+      part(of_image(g, std::max<std::size_t>(150, pixels / images)), cells, g, result);
     }
     result.first.push_back(result.pixels.size());
     number_blocks(result);
@@ -114,30 +114,15 @@ class Chooser {
     return objects;
   }
 
-  // Cells: columns of about as many pixels, each cut across.
-  void part(std::vector<SampledPixel>& mine, std::size_t cells, std::size_t g, Sampled& result) const {
-    const auto columns = static_cast<std::size_t>(std::max(1.0, std::round(std::sqrt(static_cast<double>(cells)))));
-    const std::size_t rows = std::max<std::size_t>(1, cells / columns);
-    const auto slice = [](auto first, auto last, std::size_t k, std::size_t n) {
-      const auto size = static_cast<std::size_t>(last - first);
-      return std::pair{first + static_cast<std::ptrdiff_t>(size * k / n),
-                       first + static_cast<std::ptrdiff_t>(size * (k + 1) / n)};
-    };
-    std::ranges::sort(mine, {}, [](const SampledPixel& p) { return std::array{p.x, p.y}; });
-    std::size_t number = 0;
-    for (std::size_t c = 0; c < columns; ++c) {
-      const auto [left, right] = slice(mine.begin(), mine.end(), c, columns);
-      std::sort(left, right, [](const SampledPixel& a, const SampledPixel& b) {
-        return std::array{a.y, a.x} < std::array{b.y, b.x};
-      });
-      for (std::size_t r = 0; r < rows; ++r) {
-        const auto [from, to] = slice(left, right, r, rows);
-        if (from == to) continue;
-        result.first.push_back(result.pixels.size());
-        const std::string& id = recordings_.images[g].id;
-        result.groups.push_back(columns * rows > 1 ? id + format(", part %zu", ++number) : id);
-        result.pixels.insert(result.pixels.end(), from, to);
-      }
+  void part(const std::vector<SampledPixel>& mine, std::size_t cells, std::size_t g, Sampled& result) const {
+    std::vector<std::array<int, 2>> places;
+    for (const SampledPixel& p : mine) places.push_back({p.x, p.y});
+    const std::vector<std::vector<std::size_t>> parts = relighting::cells_of(places, cells);
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      result.first.push_back(result.pixels.size());
+      const std::string& id = recordings_.images[g].id;
+      result.groups.push_back(parts.size() > 1 ? id + format(", part %zu", k + 1) : id);
+      for (const std::size_t p : parts[k]) result.pixels.push_back(mine[p]);
     }
   }
 
