@@ -2,7 +2,7 @@
 // that had no part in it. One process: RecordedDragon.*
 //
 // The set's poses are for (x, -z, y) of its mesh. Reached over one and the same mask, beside the peer's published poses
-// (which have 0.887, 0.908 and 0.901 over a mask of their own); depth is the sensor's over the model's: median,
+// (which have 0.887, 0.908, 0.901 over a mask of their own); depth is the sensor's over the model's: median, and 1.4826
 // and 1.4826 of the median deviation from it:
 //
 //   frame   IoU start / found / peer   depth off, mm        scatter, mm
