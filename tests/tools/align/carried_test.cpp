@@ -9,11 +9,9 @@
 
 #include "base/text.h"
 #include "manifest/sections/alignment.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/light_position.h"
 #include "manifest/sections/mounting.h"
-#include "manifest/sections/robot.h"
 #include "wedge_scene.h"
 
 namespace gonio::tests {
@@ -35,50 +33,52 @@ class AlignCarried : public WedgeScene {
   }
   // Where from a lamp's shadow is seen, not hidden behind the wedge.
   static constexpr std::array<std::size_t, 6> beside{0, 1, 0, 0, 1, 1};
-  // Photographs, from two places, at these poses of the tool, of which masks are known; binary ones, as
-  // somebody would paint them.
-  manifest::Document carried(const std::vector<int>& at = {0, 1, 2, 3, 4, 5}) {
+  // The scene with photographs, from two places, at these poses of the tool, of which masks are known; binary ones, as
+  // somebody would paint them. The pose of image `without` is not told.
+  std::string carried(const std::vector<int>& at = {0, 1, 2, 3, 4, 5}, std::size_t without = 99) {
     truth_.stations.push_back(
         {{quaternion_of_rotation_vector({0, 0, -pi / 2}) * quaternion_of_rotation_vector({-130 * pi / 180, 0, 0}),
           {-0.5, 0, 0.42}},
          0});
     truth_.lamps_m.clear();
-    manifest::Document d = manifest::parse_document(scene(), "scene.json", folder_.path());
-    d.outlines.clear();
-    const manifest::ImageEntry first = d.images[0];
-    d.images.clear(), d.robots["arm"].model = "ur5";
+    std::string images, outlines, files = R"("files": {"mesh": {"path": "wedge.ply"})";
     for (std::size_t lamp = 0; lamp < at.size(); ++lamp) {
       const int k = at[lamp];
       const std::size_t station = beside[static_cast<std::size_t>(k)];
       truth_.lamps_m.push_back(world_from_base_ * (base_from_tool(k) * light_in_tool_));
-      manifest::ImageEntry image = first;
-      image.id = format("v%zu", lamp), image.robot = "arm";
-      static_cast<Rigid<frame::World, frame::Camera>&>(*image.world_from_camera) =
-          truth_.stations[station].world_from_camera;
-      image.base_from_tool.emplace();
-      static_cast<Rigid<frame::Base, frame::Tool>&>(*image.base_from_tool) = base_from_tool(k);
-      d.images.push_back(image);
-      add_mask(d, image.id, "object", {station, 0, {}});
-      add_mask(d, image.id, "shadow", {station, 0, lamp});
+      const std::string id = format("v%zu", lamp), between = lamp > 0 ? ",\n" : "";
+      images += between + R"({"id": ")" + id +
+                R"(", "camera": "c", "light": "a", "robot": "arm", "world_from_camera": )" +
+                text_of(truth_.stations[station].world_from_camera) +
+                (lamp == without ? "" : R"(, "base_from_tool": )" + text_of(base_from_tool(k))) + "}";
+      for (const std::string kind : {"object", "shadow"}) {
+        write_binary(id + kind, kind == "object" ? alignment::RimSubject{station, 0, {}}
+                                                 : alignment::RimSubject{station, 0, lamp});
+        files += R"(, ")" + id + kind + R"(": {"path": ")" + id + kind + R"(.exr"})";
+        outlines += (outlines.empty() ? "" : ",\n") + (R"({"image": ")" + id) + R"(", "object": "wedge", "kind": ")" +
+                    kind + R"(", "mask": ")" + id + kind + R"("})";
+      }
     }
-    return d;
+    std::string text = scene();
+    const auto first = text.find(R"("files")"), cameras = text.find(R"("cameras")");
+    text.replace(first, cameras - first, files + R"(}, "robots": {"arm": {"model": "ur5"}},)" + "\n ");
+    return text.substr(0, text.find(R"("images")")) + R"("images": [)" + images + "],\n \"outlines\": [" + outlines +
+           "]}";
   }
-  void add_mask(manifest::Document& d, const std::string& image, const std::string& kind,
-                const alignment::RimSubject& subject) {
+  template <class Motion>
+  static std::string text_of(const Motion& m) {
+    return format(R"({"rotation": [%.17g, %.17g, %.17g, %.17g], "translation_m": [%.17g, %.17g, %.17g]})", m.rotation.w,
+                  m.rotation.x, m.rotation.y, m.rotation.z, m.translation_m.x, m.translation_m.y, m.translation_m.z);
+  }
+  void write_binary(const std::string& name, const alignment::RimSubject& subject) {
     io::Image mask = mask_of(subject);
     for (float& share : mask.data) share = share > 0.5F ? 1.0F : 0.0F;
-    io::write_picture(folder_ / (image + kind + ".exr"), mask);
-    manifest::Outline outline;
-    outline.image = image, outline.object = "wedge", outline.kind = kind;
-    outline.mask = manifest::add_file(d, folder_ / (image + kind + ".exr"), image + kind);
-    d.outlines.push_back(outline);
+    io::write_picture(folder_ / (name + ".exr"), mask);
   }
-  std::string text_of(const manifest::Document& d) const { return manifest::print_document(d, folder_.path()); }
 };
 
 TEST_F(AlignCarried, EveryPlaceGoesThroughThePipeToTheLampsPlaceOnTheTool) {
-  const manifest::Document stated = carried();
-  const Ended aligned = align(text_of(stated), {"--carried", "a"});
+  const Ended aligned = align(carried(), {"--carried", "a"});
   ASSERT_EQ(aligned.status, 0) << aligned.err;
   const manifest::Document found = document_of(aligned);
   ASSERT_EQ(found.light_positions.size(), static_cast<std::size_t>(poses)) << aligned.err;
@@ -114,7 +114,7 @@ TEST_F(AlignCarried, EveryPlaceGoesThroughThePipeToTheLampsPlaceOnTheTool) {
 }
 
 TEST_F(AlignCarried, PhotographsAtOnePoseShareOnePlace) {
-  const Ended aligned = align(text_of(carried({0, 0})), {"--carried", "a"});
+  const Ended aligned = align(carried({0, 0}), {"--carried", "a"});
   ASSERT_EQ(aligned.status, 0) << aligned.err;
   const manifest::Document found = document_of(aligned);
   ASSERT_EQ(found.light_positions.size(), 1U);
@@ -122,10 +122,9 @@ TEST_F(AlignCarried, PhotographsAtOnePoseShareOnePlace) {
 }
 
 TEST_F(AlignCarried, RefusesInOneLine) {
-  manifest::Document d = carried();
-  refused(text_of(d), 64, "--carried: names \"b\", which throws no shadow", {"--carried", "b"});
-  d.images[3].base_from_tool.reset();
-  refused(text_of(d), 65, "/images/3/base_from_tool: is missing, and a tool carries \"a\"", {"--carried", "a"});
+  refused(carried(), 64, "--carried: names \"b\", which throws no shadow", {"--carried", "b"});
+  refused(carried({0, 1, 2, 3}, 3), 65, "/images/3/base_from_tool: is missing, and a tool carries \"a\"",
+          {"--carried", "a"});
 }
 
 }  // namespace
