@@ -6,6 +6,7 @@ complete -c align -l strokes -x -d 'With --masks strokes: a picture as large as 
 complete -c align -l from -x -a 'stated nothing either' -d 'Where to begin: at the stated pose, from nothing, or at the stated one and, where that leads nowhere, from nothing.'
 complete -c align -l free -x -a 'scale size camera focal ground' -d 'What else is not known, beside poses and lamps: the meshs three scales, one size, the cameras poses, their focal lengths, the ground. May be repeated.'
 complete -c align -l hold -x -a 'pose light' -d 'What is known exactly. May be repeated.'
+complete -c align -l carried -x -d 'Lamp that a robots tool carries: it has another place at every base_from_tool of the images, and these are written as light_positions. May be repeated.'
 complete -c align -l scale-sigma -x -d 'One standard deviation of scales about 1, before anything is seen.'
 complete -c align -l contact -x -d 'One standard deviation of the lowest vertexs height over the ground.'
 complete -c align -l no-contact -d 'The object hangs, or the ground is known badly: it need not touch.'

@@ -33,6 +33,20 @@ std::vector<std::size_t> lamps_of(const Question& q) {
       lamps.push_back(*s.subject.lamp);
   return lamps;
 }
+// Lamps whose shadows this fit does not account for, be all else well: among many rims a few hardly count.
+std::vector<std::size_t> unmet_lamps(const Fitted& f, const Question& q, const AlignWish& wish) {
+  std::vector<std::size_t> unmet;
+  for (const std::size_t lamp : lamps_of(q)) {
+    double points = 0, met = 0, explained = 0;
+    for (std::size_t i = 0; i < q.sightings.size(); ++i) {
+      if (q.sightings[i].subject.lamp != lamp) continue;
+      const auto n = static_cast<double>(q.sightings[i].points.size());
+      points += n, met += n * f.sightings[i].met, explained += n * f.sightings[i].explained;
+    }
+    if (std::min(met, explained) < wish.least_share * points) unmet.push_back(lamp);
+  }
+  return unmet;
+}
 bool is_free(const Question& q, Block block, std::size_t which) {
   return std::any_of(q.freedoms.begin(), q.freedoms.end(),
                      [&](const Freedom& f) { return f.block == block && f.which == which; });
@@ -52,15 +66,14 @@ End fitted_from(const Setting& setting, const Question& q, const AlignWish& wish
 }
 
 // All of it, from a start whose body is nearly right: lamps that are not, are searched.
-End finish(const Setting& start, const Question& q, const AlignWish& wish, bool search_lamps, double from_px,
-           Tried tried) {
+End finish(const Setting& start, const Question& q, const AlignWish& wish, const std::vector<std::size_t>& search_lamps,
+           double from_px, Tried tried) {
   Setting setting = start;
-  if (search_lamps)
-    for (const std::size_t lamp : lamps_of(q))
-      if (is_free(q, Block::lamp_shift, lamp)) {
-        const auto places = search_lamp(setting, q, lamp, wish.search);
-        if (!places.empty()) setting = places.front().setting;
-      }
+  for (const std::size_t lamp : search_lamps)
+    if (is_free(q, Block::lamp_shift, lamp)) {
+      const auto places = search_lamp(setting, q, lamp, wish.search);
+      if (!places.empty()) setting = places.front().setting;
+    }
   return fitted_from(setting, q, wish, from_px, std::move(tried));
 }
 
@@ -125,7 +138,7 @@ bool mirrored(const Setting& stated, const Question& q, std::size_t body, const 
   AlignWish quick = wish;
   quick.record = false;
   for (const Start& start : search_body(other, q, body, quick.search))
-    if (believed(finish(start.setting, q, quick, true, 12, {}).fitted, wish)) return true;
+    if (believed(finish(start.setting, q, quick, lamps_of(q), 12, {}).fitted, wish)) return true;
   return false;
 }
 
@@ -161,11 +174,13 @@ void sort_best_first(std::vector<End>& ends) {
 std::vector<End> ends_of_stated(const Setting& stated, const Question& q, const AlignWish& wish) {
   std::vector<End> ends;
   try {
-    ends.push_back(finish(stated, q, wish, false, wish.reach_px, {.from = "as stated"}));
-    if (!believed(ends.front().fitted, wish) && !wish.lamps_known) {
+    ends.push_back(finish(stated, q, wish, {}, wish.reach_px, {.from = "as stated"}));
+    const std::vector<std::size_t> lamps =
+        believed(ends.front().fitted, wish) ? unmet_lamps(ends.front().fitted, q, wish) : lamps_of(q);
+    if (!wish.lamps_known && (!lamps.empty() || !believed(ends.front().fitted, wish))) {
       Tried on = ends.front().tried;
       on.from = "as stated, then lamps searched";
-      ends.push_back(finish(ends.front().fitted.setting, q, wish, true, wish.reach_px, std::move(on)));
+      ends.push_back(finish(ends.front().fitted.setting, q, wish, lamps, wish.reach_px, std::move(on)));
     }
   } catch (const Error&) {
     if (wish.from == AlignWish::From::stated) throw;
@@ -180,6 +195,7 @@ void add_searched(const Setting& stated, const Question& q, std::size_t body, co
   SearchWish search = wish.search;
   search.record = wish.record;
   const std::vector<Start> starts = search_body(stated, q, body, search);
+  const std::vector<std::size_t> none;
   bool enough = false;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const auto& paths = starts[i].paths;
@@ -192,7 +208,7 @@ void add_searched(const Setting& stated, const Question& q, std::size_t body, co
       if (wish.record) left.push_back(std::move(tried));
       continue;
     }
-    ends.push_back(finish(starts[i].setting, q, wish, !wish.lamps_known, 12, std::move(tried)));
+    ends.push_back(finish(starts[i].setting, q, wish, wish.lamps_known ? none : lamps_of(q), 12, std::move(tried)));
     sort_best_first(ends);
   }
 }

@@ -25,7 +25,7 @@ void say(const AlignmentInput& in, const std::vector<Aligned>& all) {
   const auto stands = std::find_if(all.begin(), all.end(), [](const Aligned& a) { return a.stands(); });
   if (stands == all.end()) return;
   for (const std::size_t l : loose_lamps(in, stands->fitted))
-    log(LogLevel::warning, "lamp " + in.lamps[l] + ": no rim holds its place; it stays where it is stated");
+    log(LogLevel::warning, "lamp " + in.lamp_words(l) + ": no rim holds its place; it stays where it is stated");
 }
 
 }  // namespace
@@ -50,6 +50,8 @@ Verdict align_document(manifest::Document& document, const AlignmentRequest& req
   // A body that was found, or is one of several alike, moves; one that is lost stays where it was stated.
   for (std::size_t b = 0; b < all.size(); ++b)
     if (all[b].stands()) move_document(document, in, b, all[b]);
+  const auto stands = std::find_if(all.begin(), all.end(), [](const Aligned& a) { return a.stands(); });
+  if (stands != all.end()) enter_carried(document, in, stands->fitted);
   const Aligned& first = all.front();
   for (std::size_t k = 0; k < in.rims.size(); ++k) {
     manifest::Outline& outline = document.outlines[in.rims[k].outline];

@@ -10,6 +10,7 @@
 #include "manifest/pose_sigma.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/light.h"
+#include "manifest/sections/light_position.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
 #include "mechanism/mechanism.h"
@@ -43,6 +44,13 @@ std::vector<double> sigmas(const Fitted& f, Index at) {
   return at < 0 ? std::vector<double>{0, 0, 0}
                 : std::vector<double>{sigma_at(f, at), sigma_at(f, at + 1), sigma_at(f, at + 2)};
 }
+// Of one block of three numbers, 3 x 3, row by row.
+std::vector<double> covariance_of(const Fitted& f, Index at) {
+  std::vector<double> out;
+  for (Index i = 0; i < 3; ++i)
+    for (Index k = 0; k < 3; ++k) out.push_back(f.covariance(at + i, at + k));
+  return out;
+}
 // Of two blocks of three numbers, 6 x 6, row by row; zeros for what is held.
 std::vector<double> joint(const Fitted& f, Index first, Index second) {
   std::vector<double> out(36, 0);
@@ -70,8 +78,8 @@ manifest::AlignedLight light_entry(const AlignmentInput& in, std::size_t lamp, c
   manifest::AlignedLight light;
   light.light = in.lamps[lamp], light.position_m = numbers(f.setting.lamps_m[lamp]);
   const Index at = place_of(in.question.freedoms, Block::lamp_shift, lamp);
-  for (Index i = 0; at >= 0 && i < 3; ++i)
-    for (Index k = 0; k < 3; ++k) light.covariance_m2.push_back(f.covariance(at + i, at + k));
+  if (at >= 0) light.covariance_m2 = covariance_of(f, at);
+  if (const auto place = in.carried.find(lamp); place != in.carried.end()) light.images = place->second.images;
   if (size.edges > 0) light.radius_m = size.radius_m, light.sigma["radius_m"] = {size.sigma_m};
   return light;
 }
@@ -161,7 +169,7 @@ manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const A
   }
   a.open = found.open;
   a.open.insert(a.open.end(), found.symmetries.begin(), found.symmetries.end());
-  for (const std::size_t l : loose_lamps(in, f)) a.open.push_back("the place of lamp " + in.lamps[l]);
+  for (const std::size_t l : loose_lamps(in, f)) a.open.push_back("the place of lamp " + in.lamp_words(l));
   for (const Rival& r : found.rivals) a.candidates.push_back({pose_of(r.setting.bodies[body]), r.rms_px, r.explained});
   const std::vector<LampSize> sizes = lamp_sizes(in, f.setting);
   for (std::size_t l = 0; l < in.lamps.size(); ++l)
@@ -211,7 +219,7 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
   const std::vector<std::size_t> loose = loose_lamps(in, f);
   for (std::size_t l = 0; l < in.lamps.size(); ++l) {
     const Index at = place_of(freedoms, Block::lamp_shift, l);
-    if (at < 0 || std::find(loose.begin(), loose.end(), l) != loose.end()) continue;
+    if (at < 0 || in.carried.contains(l) || std::find(loose.begin(), loose.end(), l) != loose.end()) continue;
     manifest::Light& light = document.lights.at(in.lamps[l]);
     light.parameters["position_m"].value = numbers(f.setting.lamps_m[l]);
     light.sigma["position_m"] = sigmas(f, at);
@@ -234,6 +242,22 @@ void move_document(manifest::Document& document, const AlignmentInput& in, std::
     camera.sigma["fx_px"] = {lens.fx_px * sigma_at(f, at)};
     camera.sigma["fy_px"] = {lens.fy_px * sigma_at(f, at)};
     camera.covariance = {};  // of a calibration that this is no longer
+  }
+}
+
+void enter_carried(manifest::Document& document, const AlignmentInput& in, const Fitted& f) {
+  const std::vector<std::size_t> loose = loose_lamps(in, f);
+  for (const auto& [lamp, place] : in.carried)
+    std::erase_if(document.light_positions,
+                  [&](const manifest::LightPosition& p) { return p.light == in.lamps[lamp]; });
+  for (const auto& [lamp, place] : in.carried) {
+    const Index at = place_of(in.question.freedoms, Block::lamp_shift, lamp);
+    if (at < 0 || std::find(loose.begin(), loose.end(), lamp) != loose.end()) continue;
+    manifest::LightPosition entry;
+    entry.id = in.lamps[lamp] + "-" + place.images.front(), entry.light = in.lamps[lamp], entry.robot = place.robot;
+    entry.base_from_tool = place.base_from_tool, entry.position_m = numbers(f.setting.lamps_m[lamp]);
+    entry.sigma_m = sigmas(f, at), entry.covariance_m2 = covariance_of(f, at);
+    document.light_positions.push_back(std::move(entry));
   }
 }
 

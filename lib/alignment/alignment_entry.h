@@ -16,6 +16,10 @@ std::vector<std::size_t> loose_lamps(const AlignmentInput& in, const Fitted& fit
 // Loose lamps stay where they are stated.
 void move_document(manifest::Document& document, const AlignmentInput& in, std::size_t body, const Aligned& found);
 
+// Places of carried lamps as `light_positions`, for handeye --light: one for every pose of the tool at which rims hold
+// it, with its covariance. Entries of these lamps that were there are replaced.
+void enter_carried(manifest::Document& document, const AlignmentInput& in, const Fitted& fitted);
+
 // The table of a rim's points: align(1), FILES.
 std::string point_table(const AlignmentInput& in, const Setting& setting, std::size_t sighting, const SightingFit& fit);
 

@@ -116,14 +116,40 @@ std::size_t station_of(const Document& d, std::size_t image, AlignmentInput& in)
   return in.stated.stations.size() - 1;
 }
 
-std::size_t lamp_of(const Document& d, std::size_t outline, std::size_t image, AlignmentInput& in) {
+// The number that `lamp`, which a tool carries, has at the image's pose; nothing: it is the first image there. `place`:
+// what to remember of it then.
+std::optional<std::size_t> carried_lamp(const Document& d, const std::string& lamp, std::size_t image,
+                                        AlignmentInput& in, CarriedPlace& place) {
+  const manifest::ImageEntry& entry = d.images[image];
+  if (!entry.base_from_tool)
+    throw Error(Exit::data, at(d, "images", image, "base_from_tool"), "is missing, and a tool carries \"" + lamp + "\"",
+                "give the robot's pose of every photograph under that lamp");
+  for (auto& [number, known] : in.carried)
+    if (in.lamps[number] == lamp && known.robot == entry.robot &&
+        static_cast<const Rigid<frame::Base, frame::Tool>&>(known.base_from_tool) == *entry.base_from_tool) {
+      if (std::find(known.images.begin(), known.images.end(), entry.id) == known.images.end())
+        known.images.push_back(entry.id);
+      return number;
+    }
+  place = {entry.robot, *entry.base_from_tool, {entry.id}};
+  return {};
+}
+
+std::size_t lamp_of(const Document& d, std::size_t outline, std::size_t image, const InputWish& wish,
+                    AlignmentInput& in) {
   std::string name = d.outlines[outline].light;
   const auto& on = d.images[image].light;
   if (name.empty() && on.size() == 1) name = on[0];
   if (name.empty())
     throw Error(Exit::data, at(d, "outlines", outline, "light"), "is missing", "say which lamp throws this shadow");
-  const auto known = std::find(in.lamps.begin(), in.lamps.end(), name);
-  if (known != in.lamps.end()) return static_cast<std::size_t>(known - in.lamps.begin());
+  CarriedPlace carried;
+  if (wish.carried.contains(name)) {
+    if (const auto number = carried_lamp(d, name, image, in, carried)) return *number;
+    in.carried[in.lamps.size()] = carried;
+  } else {
+    const auto known = std::find(in.lamps.begin(), in.lamps.end(), name);
+    if (known != in.lamps.end()) return static_cast<std::size_t>(known - in.lamps.begin());
+  }
   const manifest::Light& light = d.lights.at(name);
   const auto position = light.parameters.find("position_m");
   const bool given = position != light.parameters.end() && position->second.value.size() == 3;
@@ -186,6 +212,10 @@ void check_sizes(const Document& d, const AlignmentInput& in) {
 
 }  // namespace
 
+std::string AlignmentInput::lamp_words(std::size_t lamp) const {
+  const auto place = carried.find(lamp);
+  return lamps[lamp] + (place == carried.end() ? "" : " at " + place->second.images.front());
+}
 Vec2 AlignmentInput::straight(std::size_t lens, Vec2 pixel) const {
   const Vec3 ray = models[lens].ray(pixel).direction;
   const camera::Intrinsics& l = models[lens].intrinsics();
@@ -241,7 +271,7 @@ AlignmentInput read_alignment(const Document& document, const InputWish& wish, c
     const std::size_t image = *manifest::index_of_image(document, o.image);
     const std::size_t station = station_of(document, image, in);
     RimSubject subject{station, static_cast<std::size_t>(body - in.bodies.begin()), {}};
-    if (shadow) subject.lamp = lamp_of(document, i, image, in);
+    if (shadow) subject.lamp = lamp_of(document, i, image, wish, in);
     auto& known = regions[o.image];
     if (!known) known = std::make_shared<const MaskRegions>(read_regions(document, o.image, note));
     SeenRim rim{i, o.image, known->smoothed_by(i, wish.smooth_px),
@@ -267,6 +297,9 @@ AlignmentInput read_alignment(const Document& document, const InputWish& wish, c
       throw Error(Exit::data, manifest::place(document, "/outlines"), "show no rim of \"" + in.bodies[b] + "\" itself",
                   "give a mask of kind \"object\"; a shadow alone does not say where it stands");
   }
+  for (const std::string& name : wish.carried)
+    if (std::find(in.lamps.begin(), in.lamps.end(), name) == in.lamps.end())
+      throw Error(Exit::usage, "--carried", "names \"" + name + "\", which throws no shadow that outlines show");
   check_sizes(document, in);
   add_freedoms(wish, in);
   if (in.question.freedoms.empty()) throw Error(Exit::usage, "--hold", "leaves nothing to find");

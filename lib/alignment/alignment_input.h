@@ -19,6 +19,7 @@ struct InputWish {
   std::vector<std::string> objects{};  // to align; empty: all of which outlines show something
   std::set<std::string> freed{};       // "scale", "size", "camera", "focal", "ground", beside the pose and lamps
   std::set<std::string> held{};        // "pose", "light"
+  std::set<std::string> carried{};     // lamps on a robot's tool: each has a place at every base_from_tool
   double scale_sigma = 0.05;           // priors, where something is known of what is freed
   double contact_m = 1e-4;             // 0: nothing is known of where it stands
   double smooth_px = 1.2;              // of binary masks
@@ -34,6 +35,12 @@ struct SeenRim {
   std::vector<RimPoint> in_picture;
   std::vector<double> spread_px{};  // of a shadow's points, where the photograph is there (edge_spread.h); else empty
 };
+// A lamp's place while the robot whose tool carries it stood at one pose.
+struct CarriedPlace {
+  std::string robot;
+  manifest::Pose<frame::Base, frame::Tool> base_from_tool{};
+  std::vector<std::string> images{};
+};
 struct AlignmentInput {
   std::deque<Shape> shapes;
   Setting stated;
@@ -43,7 +50,10 @@ struct AlignmentInput {
   std::vector<std::vector<std::string>> images_of_station;
   std::vector<camera::CameraModel> models;  // of the lenses
   std::vector<bool> lamp_stated;
-  std::string ground;  // its object; empty: none
+  // By lamp of the setting, as far as it is carried: one name then stands in `lamps` once for every pose.
+  std::map<std::size_t, CarriedPlace> carried{};
+  std::string lamp_words(std::size_t lamp) const;  // its name, and of a carried one the images
+  std::string ground;                              // its object; empty: none
   Rigid<frame::World, frame::Object> world_from_ground{};
   // Position in the straightened picture of a pixel of lens `lens`, and back.
   Vec2 straight(std::size_t lens, Vec2 pixel) const;

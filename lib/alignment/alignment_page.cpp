@@ -80,7 +80,7 @@ report::TableText pose_table(const AlignmentInput& in, const std::vector<Aligned
       three("turn of " + in.bodies[free.which] + " from its mesh's axes",
             rotation_vector_of(f.setting.bodies[free.which].world_from_object.rotation), 180 / pi, "degrees");
     if (free.block == Block::lamp_shift)
-      three("lamp " + in.lamps[free.which], f.setting.lamps_m[free.which], 1e3, "mm");
+      three("lamp " + in.lamp_words(free.which), f.setting.lamps_m[free.which], 1e3, "mm");
     if (free.block == Block::station_shift)
       three("camera of " + in.images_of_station[free.which].front(),
             f.setting.stations[free.which].world_from_camera.translation_m, 1e3, "mm");
@@ -239,7 +239,7 @@ std::string alignment_page(const manifest::Document& document, const AlignmentIn
     if (!open.empty()) page.paragraph("No rim holds, or looks alike:"), page.list(open);
   }
   for (const std::size_t lamp : loose_lamps(in, f))
-    page.paragraph("No rim holds the place of lamp " + in.lamps[lamp] + ".");
+    page.paragraph("No rim holds the place of lamp " + in.lamp_words(lamp) + ".");
   show_differences(page, document, in, f);
   show_convergence(page, in, all);
   page.section("What is left");

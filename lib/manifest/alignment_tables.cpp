@@ -27,9 +27,11 @@ const std::vector<Field<AlignedLight>>& aligned_light_fields() {
   using L = AlignedLight;
   static const std::vector<Field<L>> table{
       field("light", &L::light, "", "its name").needed(),
+      field("images", &L::images, "", "of a light that a robot's tool carries: those taken while it stood there"),
       field("position_m", &L::position_m, "m", "of its centre, in the world"),
       field("covariance_m2", &L::covariance_m2, "m^2", "of the position, 3 x 3, row by row"),
-      field("radius_m", &L::radius_m, "m", "from the width of penumbrae").range(0, infinite), sigma_field(&L::sigma)};
+      field("radius_m", &L::radius_m, "m", "from the width of penumbrae").range(0, infinite),
+      sigma_field(&L::sigma)};
   return table;
 }
 

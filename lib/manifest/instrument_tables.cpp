@@ -103,8 +103,9 @@ const std::vector<Field<LightPosition>>& light_position_fields() {
       field("robot", &LightPosition::robot, "", "name of the robot that held it"),
       field("base_from_tool", &LightPosition::base_from_tool, "", "takes tool to robot base coordinates").needed(),
       field("position_m", &LightPosition::position_m, "m", "of the light, world").needed(),
-      field("sigma_m", &LightPosition::sigma_m, "m", "one standard deviation, one or three numbers")
-          .range(0, infinite)};
+      field("sigma_m", &LightPosition::sigma_m, "m", "one standard deviation, one or three numbers").range(0, infinite),
+      field("covariance_m2", &LightPosition::covariance_m2, "m^2",
+            "of the position, 3 x 3, row by row; then sigma_m may be left out")};
   return table;
 }
 

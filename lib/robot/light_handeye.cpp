@@ -34,7 +34,8 @@ struct State {
 struct Row {
   Vector3 e;  // predicted minus found
   Matrix3x9 j;
-  Vector3 variance;
+  Matrix3 variance;
+  Matrix3 weight(double robot_m) const { return (variance + robot_m * robot_m * Matrix3::Identity()).inverse(); }
 };
 
 Vector3 at_base(const LightSample& s, const Vector3& light) {
@@ -126,8 +127,10 @@ std::vector<Row> rows_of(const std::vector<LightSample>& samples, const State& s
   for (const LightSample& s : samples) {
     const Vector3 p = at_base(s, state.light);
     const Vector3 sigma = eigen_of(s.sigma_m);
+    const Matrix3 variance =
+        s.covariance_m2 ? linear::as_eigen(*s.covariance_m2) : Matrix3(sigma.cwiseProduct(sigma).asDiagonal());
     rows.push_back({state.rotation * p + state.shift - eigen_of(s.position_m),
-                    slope(p, eigen_of(s.base_from_tool.rotation), state), sigma.cwiseProduct(sigma)});
+                    slope(p, eigen_of(s.base_from_tool.rotation), state), variance});
   }
   return rows;
 }
@@ -135,8 +138,7 @@ std::vector<Row> rows_of(const std::vector<LightSample>& samples, const State& s
 Matrix9 information(const std::vector<Row>& rows, double robot_m) {
   Matrix9 n = Matrix9::Zero();
   for (const Row& row : rows) {
-    const Vector3 w = (row.variance.array() + robot_m * robot_m).inverse();
-    n.noalias() += row.j.transpose() * w.asDiagonal() * row.j;
+    n.noalias() += row.j.transpose() * row.weight(robot_m) * row.j;
   }
   return n;
 }
@@ -159,15 +161,14 @@ void refine(const std::vector<LightSample>& samples, State& state, double& robot
     const Matrix9 n = information(rows, robot_m), inverse = pseudo_inverse(n);
     Vector9 gradient = Vector9::Zero();
     for (const Row& row : rows) {
-      const Vector3 w = (row.variance.array() + robot_m * robot_m).inverse();
-      gradient += row.j.transpose() * w.asDiagonal() * row.e;
+      gradient += row.j.transpose() * row.weight(robot_m) * row.e;
     }
     const Vector9 change = -inverse * gradient;
     double squares = 0, trace = 0;
     for (const Row& row : rows) {
-      const Vector3 w = (row.variance.array() + robot_m * robot_m).inverse();
-      squares += w.cwiseProduct(row.e + row.j * change).squaredNorm();
-      trace += w.sum() - (w.asDiagonal() * row.j * inverse * row.j.transpose() * w.asDiagonal()).trace();
+      const Matrix3 w = row.weight(robot_m);
+      squares += (w * (row.e + row.j * change)).squaredNorm();
+      trace += w.trace() - (w * row.j * inverse * row.j.transpose() * w).trace();
     }
     const double before = robot_m;
     if (trace > 0) robot_m = std::max(least_m, robot_m * std::sqrt(std::clamp(squares / trace, 1e-4, 1e4)));
@@ -196,8 +197,10 @@ Eigen::MatrixXd free_directions(const std::vector<LightSample>& samples, const S
   for (int k = 0; k < disturbances; ++k) {
     std::vector<Row> other = rows;
     for (std::size_t i = 0; i < samples.size(); ++i) {
+      const linear::SymmetricEigen<Matrix3> spread(rows[i].variance + robot_m * robot_m * Matrix3::Identity());
       Vector3 shift;
-      for (int c = 0; c < 3; ++c) shift(c) = random.normal() * std::sqrt(rows[i].variance(c) + robot_m * robot_m);
+      for (int c = 0; c < 3; ++c) shift(c) = random.normal() * std::sqrt(std::max(0.0, spread.eigenvalues()(c)));
+      shift = spread.eigenvectors() * shift;
       other[i].j = slope(at_base(samples[i], state.light) + state.rotation.transpose() * shift,
                          eigen_of(samples[i].base_from_tool.rotation), state);
     }

@@ -2,12 +2,13 @@
 // poses of the robot is known in the world. Wanted are its place in the tool, l, and the robot's base in the world, W:
 //   position = W * base_from_tool * l          at every pose,
 // by weighted least squares (Gauss-Newton) from the best of several starts, each an alternation of Procrustes' problem
-// for W (Umeyama, PAMI 13(4), 1991) and a linear problem for l. Every position has its sigma; what it cannot explain is
-// estimated as one more noise by restricted maximum likelihood: the robot's. Directions that the poses leave open are
-// named and never returned as numbers: with shifts alone, l cannot be told from the base; with turns about one axis its
-// part along the axis.
+// for W (Umeyama, PAMI 13(4), 1991) and a linear problem for l. Every position has its sigma or its covariance; what it
+// cannot explain is estimated as one more noise by restricted maximum likelihood: the robot's. Directions that the
+// poses leave open are named and never returned as numbers: with shifts alone, l cannot be told from the base; with
+// turns about one axis its part along the axis.
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ namespace gonio::robot {
 struct LightSample {
   std::string id;
   Rigid<frame::Base, frame::Tool> base_from_tool;
-  Vec3 position_m, sigma_m;  // world; sigma above 0
+  Vec3 position_m, sigma_m;             // world; sigma above 0
+  std::optional<Mat3> covariance_m2{};  // where the coordinates' errors go together; its diagonal is sigma_m squared
 };
 struct LightMounting {
   Rigid<frame::World, frame::Base> world_from_base;
@@ -37,8 +39,8 @@ struct LightMounting {
 // At least four samples.
 LightMounting calibrate_light(const std::vector<LightSample>& samples);
 
-// Samples of one light from `light_positions`; Error(data) where there are too few, sigmas are missing, or several
-// lights stand there and none is named.
+// Samples of one light from `light_positions`; Error(data) where there are too few, sigmas are missing or covariances
+// are none, or several lights stand there and none is named.
 std::vector<LightSample> light_samples(const manifest::Document& document, std::string& light,
                                        const std::string& robot);
 void enter_light_mounting(const LightMounting& mounting, const std::string& light, const std::string& robot,

@@ -1,8 +1,12 @@
 // The light's hand-eye calibration to and from the manifest, and its page.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <set>
 
 #include "base/error.h"
+#include "linear/geom_matrices.h"
+#include "linear/symmetric_eigen.h"
 #include "manifest/document.h"
 #include "manifest/sections/frame_link.h"
 #include "manifest/sections/light_position.h"
@@ -19,6 +23,38 @@ constexpr double mm = 1e3, deg = 180 / pi;
 
 std::string pointer(std::size_t i) {
   return "/light_positions/" + std::to_string(i);
+}
+
+std::optional<Mat3> covariance_of(const manifest::Document& document, std::size_t i) {
+  const std::vector<double>& given = document.light_positions[i].covariance_m2;
+  if (given.empty()) return {};
+  const std::string where = manifest::place(document, pointer(i) + "/covariance_m2");
+  if (given.size() != 9) throw Error(Exit::data, where, "not nine numbers", "give three rows of three");
+  Mat3 m;
+  std::copy(given.begin(), given.end(), m.m.begin());
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < r; ++c)
+      if (std::abs(m(r, c) - m(c, r)) > 1e-6 * std::sqrt(std::abs(m(r, r) * m(c, c))))
+        throw Error(Exit::data, where, "not the same on both sides of its diagonal", "a covariance is symmetric");
+  if (!(linear::SymmetricEigen<Eigen::Matrix3d>(linear::as_eigen(m)).eigenvalues().minCoeff() > 0))
+    throw Error(Exit::data, where, "not positive definite", "state how well the position is known");
+  return m;
+}
+
+Vec3 sigma_of(const manifest::Document& document, std::size_t i, const std::optional<Mat3>& covariance) {
+  if (covariance) {
+    const Mat3& m = *covariance;
+    return {std::sqrt(m(0, 0)), std::sqrt(m(1, 1)), std::sqrt(m(2, 2))};
+  }
+  const std::vector<double>& given = document.light_positions[i].sigma_m;
+  const std::string where = manifest::place(document, pointer(i) + "/sigma_m");
+  if (given.size() != 1 && given.size() != 3)
+    throw Error(Exit::data, where, "not one or three numbers", "state how well the position is known");
+  const bool three = given.size() == 3;
+  const Vec3 sigma{given[0], given[three ? 1 : 0], given[three ? 2 : 0]};
+  if (!(std::min({sigma.x, sigma.y, sigma.z}) > 0))
+    throw Error(Exit::data, where, "not above 0", "state how well the position is known");
+  return sigma;
 }
 
 }  // namespace
@@ -41,16 +77,9 @@ std::vector<LightSample> light_samples(const manifest::Document& document, std::
       throw Error(Exit::data, manifest::place(document, pointer(i) + "/position_m"), "not three numbers",
                   "give x, y, z in metres");
     }
-    if (p.sigma_m.size() != 1 && p.sigma_m.size() != 3) {
-      throw Error(Exit::data, manifest::place(document, pointer(i) + "/sigma_m"), "not one or three numbers",
-                  "state how well the position is known");
-    }
-    const Vec3 sigma{p.sigma_m[0], p.sigma_m[p.sigma_m.size() == 3 ? 1 : 0], p.sigma_m[p.sigma_m.size() == 3 ? 2 : 0]};
-    if (!(std::min({sigma.x, sigma.y, sigma.z}) > 0)) {
-      throw Error(Exit::data, manifest::place(document, pointer(i) + "/sigma_m"), "not above 0",
-                  "state how well the position is known");
-    }
-    samples.push_back({p.id, *p.base_from_tool, {p.position_m[0], p.position_m[1], p.position_m[2]}, sigma});
+    samples.push_back({p.id, *p.base_from_tool, {p.position_m[0], p.position_m[1], p.position_m[2]}, {}, {}});
+    samples.back().covariance_m2 = covariance_of(document, i);
+    samples.back().sigma_m = sigma_of(document, i, samples.back().covariance_m2);
   }
   if (samples.size() < fewest_positions) {
     throw Error(Exit::data, section, std::to_string(samples.size()) + " positions of the light (at least 4 are needed)",

@@ -76,6 +76,38 @@ TEST(LightHandEye, IntervalsCoverTheTruth) {
   EXPECT_NEAR(noise, 0.002, 0.0002);
 }
 
+// Positions known well in two directions and badly along a third, which is another one at every pose.
+TEST(LightHandEye, CovariancesKeepTheIntervalsAndNarrowThem) {
+  int covered = 0, all = 0;
+  double with = 0, without = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    std::vector<LightSample> list = samples(seed, 15, 0.0005, 0), plain;
+    Random random(seed, 4);
+    for (LightSample& s : list) {
+      const Mat3 turn = matrix_of(
+          quaternion_of_rotation_vector({random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)}));
+      const Vec3 sigma{0.0002, 0.0002, 0.006};
+      s.position_m += turn * (Vec3{random.normal(), random.normal(), random.normal()} * sigma);
+      s.covariance_m2 =
+          turn * Mat3{{sigma.x * sigma.x, 0, 0, 0, sigma.y * sigma.y, 0, 0, 0, sigma.z * sigma.z}} * transposed(turn);
+      const Mat3& m = *s.covariance_m2;
+      s.sigma_m = {std::sqrt(m(0, 0)), std::sqrt(m(1, 1)), std::sqrt(m(2, 2))};
+      plain.push_back(s);
+      plain.back().covariance_m2.reset();
+    }
+    const LightMounting m = calibrate_light(list), p = calibrate_light(plain);
+    const auto e = error(m), f = error(p);
+    for (std::size_t k = 0; k < 9; ++k) covered += std::abs(e[k]) <= 1.96 * m.sigma(k);
+    all += 9;
+    for (std::size_t k = 6; k < 9; ++k) with += e[k] * e[k], without += f[k] * f[k];
+  }
+  const double share = static_cast<double>(covered) / all;
+  std::cout << "covered " << share << ", errors with over without covariances " << std::sqrt(with / without) << "\n";
+  // 540 intervals of 95 %, nine of a run alike: three standard deviations of the share, were all of them one.
+  EXPECT_GT(share, 0.95 - 3 * 0.028);
+  EXPECT_LT(with, 0.6 * without);
+}
+
 TEST(LightHandEye, ShiftsAloneLeaveTheLightOpen) {
   for (const double noise : {0.0, 0.001}) {
     const LightMounting m = calibrate_light(samples(5, 12, noise, noise, Motion::shifts));
@@ -120,6 +152,27 @@ TEST(LightHandEye, GoesThroughTheManifest) {
   EXPECT_THAT(light_page(m, list, light), HasSubstr("known within"));
   d.light_positions.resize(3);
   EXPECT_THROW(light_samples(d, light, ""), Error);
+}
+
+TEST(LightHandEye, TakesCovariancesOfTheManifestAndRefusesWhatIsNone) {
+  manifest::Document d = document_of(samples(7, 10, 0.001, 0.001));
+  std::string light;
+  manifest::LightPosition& p = d.light_positions[3];
+  p.sigma_m.clear(), p.covariance_m2 = {4e-6, 1e-6, 0, 1e-6, 9e-6, 0, 0, 0, 1e-6};
+  const LightSample taken = light_samples(d, light, "").at(3);
+  EXPECT_NEAR(taken.sigma_m.y, 0.003, 1e-12);
+  EXPECT_EQ((*taken.covariance_m2)(0, 1), 1e-6);
+  for (const std::vector<double>& bad : {std::vector<double>{1e-6, 0, 0},
+                                         {4e-6, 1e-6, 0, 2e-6, 9e-6, 0, 0, 0, 1e-6},
+                                         {1e-6, 2e-6, 0, 2e-6, 1e-6, 0, 0, 0, 1e-6}}) {
+    p.covariance_m2 = bad;
+    try {
+      light_samples(d, light, "");
+      FAIL() << "took " << bad.size() << " numbers";
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), HasSubstr("/light_positions/3/covariance_m2"));
+    }
+  }
 }
 
 TEST(LightHandEye, LeavesOutWhatIsOpen) {

@@ -29,6 +29,7 @@ alignment::AlignmentRequest request_of(cli::Invocation& call) {
   request.input.objects = call.texts("object");
   for (const std::string& what : call.texts("free")) request.input.freed.insert(what);
   for (const std::string& what : call.texts("hold")) request.input.held.insert(what);
+  for (const std::string& light : call.texts("carried")) request.input.carried.insert(light);
   request.input.scale_sigma = call.number("scale-sigma");
   request.input.contact_m = call.flag("no-contact") ? 0 : call.number("contact");
   request.input.smooth_px = call.number("smooth");
@@ -101,6 +102,13 @@ std::vector<cli::Option> options() {
        .type = Type::choice,
        .help = "What is known exactly. May be repeated.",
        .choices = {"pose", "light"},
+       .repeat = true},
+      {.name = "carried",
+       .type = Type::text,
+       .help =
+           "Lamp that a robot's tool carries: it has another place at every base_from_tool of the images, and these "
+           "are written as light_positions. May be repeated.",
+       .metavar = "LIGHT",
        .repeat = true},
       {.name = "scale-sigma",
        .type = Type::number,

@@ -34,7 +34,8 @@ const cli::Program& gonio_program() {
       .options = options(),
       .takes_out = true,
       .sections_read = {"files", "cameras", "images", "meshes", "objects", "lights", "outlines"},
-      .sections_written = {"files", "cameras", "images", "objects", "lights", "mechanisms", "outlines", "alignments"},
+      .sections_written = {"files", "cameras", "images", "objects", "lights", "mechanisms", "outlines", "alignments",
+                           "light_positions"},
       .files =
           {{"IMAGE-OBJECT-KIND-mask.exr", "with --masks: shares of pixels, and what nobody can tell"},
            {"IMAGE-OBJECT-KIND[-LIGHT].csv",

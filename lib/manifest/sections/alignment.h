@@ -26,6 +26,7 @@ struct Outline {
 };
 struct AlignedLight {
   std::string light{};
+  std::vector<std::string> images{};                  // of a light that a tool carries: taken while it stood there
   std::vector<double> position_m{}, covariance_m2{};  // world; 3 x 3, row by row
   std::optional<double> radius_m{};                   // from the width of penumbrae
   Sigmas sigma{};                                     // of radius_m
