@@ -55,6 +55,29 @@ const std::vector<Field<AlignmentCandidate>>& alignment_candidate_fields() {
   return table;
 }
 
+const std::vector<Field<AlignedPictures>>& aligned_pictures_fields() {
+  using P = AlignedPictures;
+  static const std::vector<Field<P>> table{
+      field("verdict", &P::verdict, "", "is that what was written?").one_of({"taken", "refused"}).needed(),
+      field("why", &P::why, "", "in words, where it was refused and the rims' answer stands"),
+      field("photographs", &P::photographs, "", "that were compared").range(0, infinite),
+      field("pixels", &P::pixels, "", "of these, inside objects and on the ground").range(0, infinite),
+      field("independent", &P::independent, "", "independent values that these amount to").range(0, infinite),
+      field("correlation_px", &P::correlation_px, "px", "side of a square of pixels whose errors are one error")
+          .range(0, infinite),
+      field("relative_error", &P::relative_error, "", "rms of what is left over rms of what is seen")
+          .range(0, infinite),
+      field("relative_error_rims", &P::relative_error_rims, "", "the same at the rims' answer").range(0, infinite),
+      field("chi2", &P::chi2, "", "of the move from the rims' answer, by the rims' covariance").range(0, infinite),
+      field("chi2_limit", &P::chi2_limit, "", "its 99 % point").range(0, infinite),
+      field("numbers", &P::numbers, "", "free numbers that it counts").range(0, infinite),
+      field("move_px", &P::move_px, "px", "rms over the rims' points of how far they move").range(0, infinite),
+      field("sigma_px", &P::sigma_px, "px", "what the rims state of these points, rms").range(0, infinite),
+      field("world_from_object", &P::world_from_object, "", "by rims and pictures, taken or not"),
+      field("covariance", &P::covariance, "", "6 x 6, of that pose, as the alignment's")};
+  return table;
+}
+
 const std::vector<Field<Alignment>>& alignment_fields() {
   using A = Alignment;
   static const std::vector<Field<A>> table{
@@ -76,7 +99,8 @@ const std::vector<Field<Alignment>>& alignment_fields() {
       field("open", &A::open, "", "what no rim holds, in words"),
       field("candidates", &A::candidates, "", "where ambiguous: all poses that fit, best first"),
       field("lights", &A::lights, "", "lamps that its shadows place"),
-      field("cameras", &A::cameras, "", "cameras that were moved with it")};
+      field("cameras", &A::cameras, "", "cameras that were moved with it"),
+      field("pictures", &A::pictures, "", "what the pictures themselves say, by align --picture")};
   return table;
 }
 
@@ -84,6 +108,7 @@ GONIO_RECORD(Outline, outline_fields);
 GONIO_RECORD(AlignedLight, aligned_light_fields);
 GONIO_RECORD(AlignedCamera, aligned_camera_fields);
 GONIO_RECORD(AlignmentCandidate, alignment_candidate_fields);
+GONIO_RECORD(AlignedPictures, aligned_pictures_fields);
 GONIO_RECORD(Alignment, alignment_fields);
 
 }  // namespace gonio::manifest

@@ -66,7 +66,7 @@ class ImagesProblem final : public Problem {
   SceneState raw_state(std::span<const double> values) const;
   void bind(const manifest::Document& document);
   void find_exclusions();
-  void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
+  std::vector<std::array<int, 2>> pixels_of(std::size_t view, std::size_t pixels) const;
   void fill_rows();
 
   std::unique_ptr<manifest::Document> document_;  // as it was given
