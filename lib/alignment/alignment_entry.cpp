@@ -182,8 +182,8 @@ manifest::AlignedPictures pictures_entry(const AlignmentInput& in, std::size_t b
   p.move_px = answer.move_px, p.sigma_px = answer.sigma_px;
   p.world_from_object = pose_of(answer.fitted.setting.bodies[body]);
   const auto& freedoms = in.question.freedoms;
-  p.covariance = joint(answer.fitted, place_of(freedoms, Block::body_turn, body),
-                       place_of(freedoms, Block::body_shift, body));
+  p.covariance =
+      joint(answer.fitted, place_of(freedoms, Block::body_turn, body), place_of(freedoms, Block::body_shift, body));
   return p;
 }
 

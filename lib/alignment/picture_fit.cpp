@@ -16,17 +16,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double step_px = 0.5;
-constexpr double factor_sigma = 1;        // of logarithms of albedos and brightnesses, about what is stated
-constexpr double first_relative = 0.1;    // before anything was measured
+constexpr double factor_sigma = 1;      // of logarithms of albedos and brightnesses, about what is stated
+constexpr double first_relative = 0.1;  // before anything was measured
 constexpr double first_inflation = 30;
 
 // A change of one number that moves pictures by about half a pixel.
 double step_of(const Setting& s, const Freedom& f) {
   double pitch = HUGE_VAL, focal = 1, radius = 0.1;  // metres a pixel, where the nearest camera sees the first body
-  const Body& body = s.bodies[f.block == Block::body_turn || f.block == Block::body_shift ||
-                                      f.block == Block::body_scale
-                                  ? f.which
-                                  : 0];
+  const Body& body =
+      s.bodies[f.block == Block::body_turn || f.block == Block::body_shift || f.block == Block::body_scale ? f.which
+                                                                                                           : 0];
   radius = body.shape->radius_m();
   for (const Station& station : s.stations) {
     const double f_px = s.lenses[station.lens].fx_px;
@@ -276,9 +275,9 @@ PictureFit fit_pictures(const PictureModel& model, const Fitted& rims, const std
     noise = known ? *known : noise_of(model, pictures.residual(), pictures.shown_now(), numbers);
     fit.cost = descend(false, steps);
   }
-  fit.noise = known ? *known
-                    : noise_of(model, pictures.residual(), pictures.shown_now(),
-                               static_cast<double>(pictures.numbers()));
+  fit.noise = known
+                  ? *known
+                  : noise_of(model, pictures.residual(), pictures.shown_now(), static_cast<double>(pictures.numbers()));
   fit.relative_after = relative_of_images(model, pictures.residual());
   pictures.weigh(fit.noise, false);
   pictures.linearise();

@@ -24,7 +24,7 @@ struct PictureFit {
   Eigen::MatrixXd covariance;  // of the freedoms' numbers; zeros for what is held
   Eigen::MatrixXd rims;        // C^-1 of the rims' answer
   double cost = 0;
-  std::size_t numbers = 0;     // of the freedoms, that were free
+  std::size_t numbers = 0;  // of the freedoms, that were free
   PictureNoise noise;
   std::vector<double> relative_before, relative_after;  // of each image: rms of what is left over rms of what is seen
 };
@@ -34,8 +34,8 @@ struct PictureFit {
 std::vector<std::vector<double>> picture_slopes(const PictureModel& model, const Setting& at,
                                                 const std::vector<Freedom>& freedoms, const std::vector<bool>& free);
 
-// From `rims`, whose covariance is that of `freedoms`. `most_steps` of the last descent. The noise is measured, or taken
-// from another fit to the same model, so that costs can be compared.
+// From `rims`, whose covariance is that of `freedoms`. `most_steps` of the last descent. The noise is measured, or
+// taken from another fit to the same model, so that costs can be compared.
 PictureFit fit_pictures(const PictureModel& model, const Fitted& rims, const std::vector<Freedom>& freedoms,
                         const PictureNoise* noise = nullptr);
 

@@ -211,8 +211,7 @@ struct PictureModel::Impl {
       const double aimed = count * (met[0] + met[1]) / std::max(1.0, met[0] + share * met[1]);
       chosen.push_back(choose_pixels(recordings, v, marked, aimed, [](std::array<int, 2>, Random&) { return true; }));
       thin(v, share);
-      fine_caches.push_back(
-          build_cache(caster, view_in(at, v), layout.lights, *monomials, chosen.back(), fine));
+      fine_caches.push_back(build_cache(caster, view_in(at, v), layout.lights, *monomials, chosen.back(), fine));
       tints.apply(caster, view_in(at, v), fine_caches.back());
     }
     model = std::make_unique<ImageModel>(recordings, layout, *monomials, fine_caches);
@@ -264,8 +263,9 @@ struct PictureModel::Impl {
         const Pixel& pixel = cache.pixels[mine[i]];
         PictureRow row{g, image.view, mine[i], pixel.x, pixel.y, cache.facets[pixel.first_facet].surface, {}, {}};
         const Rgb mean = local_mean(image, pixel.x, pixel.y);
-        const std::size_t place = 3 * (static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(image.picture.width) +
-                                       static_cast<std::size_t>(pixel.x));
+        const std::size_t place =
+            3 * (static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(image.picture.width) +
+                 static_cast<std::size_t>(pixel.x));
         std::array<double, 3> seen{}, variance{};
         for (std::size_t c = 0; c < 3; ++c) {
           seen[c] = image.picture.data[place + c];

@@ -17,9 +17,9 @@ namespace gonio::alignment {
 struct PictureNoise {
   std::vector<double> relative;  // [image * surfaces + surface]: of what the model shows, beside the stated noise
   double nugget = 0, reach_px = 1;
-  double colours = 0;        // correlation of one pixel's colours
-  double repeated = 1;       // variance of a mean, over that if photographs from one place were independent
-  double inflation = 1;      // of the variance of a mean over all rows, over that if they were independent
+  double colours = 0;         // correlation of one pixel's colours
+  double repeated = 1;        // variance of a mean, over that if photographs from one place were independent
+  double inflation = 1;       // of the variance of a mean over all rows, over that if they were independent
   double correlation_px = 1;  // side of a square of pixels whose errors are one error
 };
 

@@ -53,9 +53,10 @@ void decide(const PictureWish& wish, PictureAnswer& a) {
     a.why = format("the scene's surfaces and lamps leave %.0f %% of what the pictures show (limit %.0f %%)",
                    100 * a.relative_error, 100 * wish.most_relative_error);
   else if (a.chi2 > a.chi2_limit)
-    a.why = format("they would move rims by %.3f px (rms), of which the rims state %.3f px: chi-square %.1f of %zu "
-                   "numbers, limit %.1f",
-                   a.move_px, a.sigma_px, a.chi2, a.numbers, a.chi2_limit);
+    a.why = format(
+        "they would move rims by %.3f px (rms), of which the rims state %.3f px: chi-square %.1f of %zu "
+        "numbers, limit %.1f",
+        a.move_px, a.sigma_px, a.chi2, a.numbers, a.chi2_limit);
   a.taken = a.why.empty();
 }
 
@@ -104,7 +105,8 @@ Best best_of(const PictureModel& model, const AlignmentInput& in, const Fitted& 
   kept.push_back({{rims.setting, 0, rims.rms_px, rims.explained}, first});
   body.rivals.clear();
   for (auto& [rival, cost] : kept)
-    if (cost > best.fit.cost && cost < best.fit.cost + as_well) rival.worse = cost - best.fit.cost, body.rivals.push_back(rival);
+    if (cost > best.fit.cost && cost < best.fit.cost + as_well)
+      rival.worse = cost - best.fit.cost, body.rivals.push_back(rival);
   if (body.rivals.empty() && all_asked) body.symmetries.clear();
   return best;
 }
@@ -112,12 +114,13 @@ Best best_of(const PictureModel& model, const AlignmentInput& in, const Fitted& 
 }  // namespace
 
 std::string words_of(const PictureAnswer& a) {
-  const std::string seen = format("%zu pixels of %zu photographs, worth %.0f independent values, ", a.pixels,
-                                  a.photographs, a.independent);
+  const std::string seen =
+      format("%zu pixels of %zu photographs, worth %.0f independent values, ", a.pixels, a.photographs, a.independent);
   if (!a.taken) return seen + "contradict the rims, whose answer is kept: " + a.why;
-  return seen + format("agree with the rims: these move by %.3f px (rms) of %.3f px, chi-square %.1f of %zu numbers "
-                       "(limit %.1f); %.2g %% of what is seen is left",
-                       a.move_px, a.sigma_px, a.chi2, a.numbers, a.chi2_limit, 100 * a.relative_error);
+  return seen + format(
+                    "agree with the rims: these move by %.3f px (rms) of %.3f px, chi-square %.1f of %zu numbers "
+                    "(limit %.1f); %.2g %% of what is seen is left",
+                    a.move_px, a.sigma_px, a.chi2, a.numbers, a.chi2_limit, 100 * a.relative_error);
 }
 
 void refine_by_pictures(const manifest::Document& document, const AlignmentInput& in, const AlignWish& wish,
@@ -131,12 +134,13 @@ void refine_by_pictures(const manifest::Document& document, const AlignmentInput
   const Fitted rims = stands->fitted;
   const PictureModel model(moved, in, rims.setting, asked.pixels);
   if (model.rows().size() < 50)
-    throw Error(Exit::data, manifest::place(document, "/images"),
-                format("show %zu pixels of the objects and the ground beside rims and shadows' edges", model.rows().size()),
-                "leave out --picture, or give larger photographs");
+    throw Error(
+        Exit::data, manifest::place(document, "/images"),
+        format("show %zu pixels of the objects and the ground beside rims and shadows' edges", model.rows().size()),
+        "leave out --picture, or give larger photographs");
   Aligned judged = *stands;
-  Best best = all.size() == 1 ? best_of(model, in, rims, judged)
-                              : Best{rims, fit_pictures(model, rims, in.question.freedoms)};
+  Best best =
+      all.size() == 1 ? best_of(model, in, rims, judged) : Best{rims, fit_pictures(model, rims, in.question.freedoms)};
   auto answer = std::make_shared<const PictureAnswer>(answer_of(model, in, asked, best.rims, best.fit));
   for (std::size_t b = 0; b < all.size(); ++b) {
     if (!all[b].stands()) continue;

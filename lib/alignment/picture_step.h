@@ -35,7 +35,7 @@ struct PictureAnswer {
 };
 
 struct PictureWish {
-  double pixels = 4000;             // of all photographs together
+  double pixels = 4000;              // of all photographs together
   double most_relative_error = 0.3;  // what is left beyond that says that the surfaces are others
 };
 

@@ -17,8 +17,8 @@ namespace {
 
 // What has a roughness and neither a colour beneath nor an inside.
 bool is_metal(const surface::Model& model) {
-  return has_parameter(model, "alpha") && !has_parameter(model, "albedo") &&
-         !has_parameter(model, "sigma_a_per_m") && !model.transmits();
+  return has_parameter(model, "alpha") && !has_parameter(model, "albedo") && !has_parameter(model, "sigma_a_per_m") &&
+         !model.transmits();
 }
 
 }  // namespace
@@ -33,7 +33,8 @@ Followed followed(const manifest::Document& document, const std::string& name) {
   if (has_parameter(*model, "sigma_s_per_m")) return Followed::not_at_all;
   const auto alpha = surface.parameters.find("alpha");
   if (is_metal(*model))
-    return alpha != surface.parameters.end() && alpha->second.scalar() < 0.02 ? Followed::not_at_all : Followed::roughly;
+    return alpha != surface.parameters.end() && alpha->second.scalar() < 0.02 ? Followed::not_at_all
+                                                                              : Followed::roughly;
   const auto use = document.mechanisms.find(mechanism::surface_subsurface().id);
   const bool scatters =
       use != document.mechanisms.end() && (use->second.on.empty() || std::ranges::count(use->second.on, name) > 0);

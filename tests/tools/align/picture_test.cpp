@@ -8,6 +8,7 @@
 #include "alignment/picture_fit.h"
 #include "manifest/sections/alignment.h"
 #include "manifest/sections/file.h"
+#include "manifest/sections/image.h"
 #include "manifest/sections/object.h"
 #include "wedge_scene.h"
 
@@ -31,9 +32,8 @@ class AlignPicture : public WedgeScene {
     const Ended made = run({"render", "true.json", "--spp", "64", "--record", "--out", "r"}, folder_.path());
     EXPECT_EQ(made.status, 0) << made.err;
     const manifest::Document d = manifest::parse_document(made.out, "made.json", folder_.path());
-    std::string text = scene(R"("s": {"path": "shadow.exr"})",
-                             R"("s": {"path": "shadow.exr"}, "p": {"path": ")" +
-                                 d.files.at(d.images[0].file).path + "\"}");
+    std::string text = scene(R"("s": {"path": "shadow.exr"})", R"("s": {"path": "shadow.exr"}, "p": {"path": ")" +
+                                                                   d.files.at(d.images[0].file).path + "\"}");
     return text.replace(text.find(image), image.size(), R"("file": "p", )" + noisy);
   }
 };
@@ -41,7 +41,7 @@ class AlignPicture : public WedgeScene {
 // Ground under a lamp at a finite distance is Lambert's law; turning everything about turns nothing in the picture.
 TEST_F(AlignPicture, SlopesAreThoseOfLambertsLawAndOfWhatMovesTogether) {
   const manifest::Document d = manifest::parse_document(photographed(), "scene.json", folder_.path());
-  const AlignmentInput in = read_alignment(d, {.freed = {"camera", "ground"}}, {});
+  const AlignmentInput in = read_alignment(d, {}, {});
   const PictureModel model(d, in, in.stated, 300);
   ASSERT_GT(model.rows().size(), 100u);
   const std::vector<Freedom> freedoms{{Block::body_shift, 0}, {Block::station_shift, 0}, {Block::lamp_shift, 0}};
@@ -58,8 +58,8 @@ TEST_F(AlignPicture, SlopesAreThoseOfLambertsLawAndOfWhatMovesTogether) {
     }
     const Lens& lens = in.stated.lenses[0];
     const auto& pose = in.stated.stations[0].world_from_camera;
-    const Vec3 ray = pose.rotate({(model.rows()[r].x - lens.cx_px) / lens.fx_px,
-                                  (model.rows()[r].y - lens.cy_px) / lens.fy_px, 1});
+    const Vec3 ray =
+        pose.rotate({(model.rows()[r].x - lens.cx_px) / lens.fx_px, (model.rows()[r].y - lens.cy_px) / lens.fy_px, 1});
     const Vec3 at = pose.translation_m - ray * (pose.translation_m.z / ray.z), to = in.stated.lamps_m[0] - at;
     const double direct = to.z / std::pow(norm(to), 3);
     if (std::abs(shown[3 * r] * pi / 0.5 / direct - 1) > 0.02 || norm(at - Vec3{-0.03, -0.04, 0}) < 0.15) continue;
@@ -90,8 +90,8 @@ TEST_F(AlignPicture, ScatterIsThatOfAllPairs) {
       if (a.surface != b.surface || a.image != b.image) continue;
       const double d_px = std::hypot(a.x - b.x, a.y - b.y);
       if (d_px >= 6 * noise.reach_px) continue;
-      const double like = (i / 3 == k / 3 ? 1 : noise.nugget * std::exp(-d_px / noise.reach_px)) *
-                          (i % 3 == k % 3 ? 1 : noise.colours);
+      const double like =
+          (i / 3 == k / 3 ? 1 : noise.nugget * std::exp(-d_px / noise.reach_px)) * (i % 3 == k % 3 ? 1 : noise.colours);
       all += noise.repeated * like * slopes.row(i).transpose() * slopes.row(k);
     }
   EXPECT_TRUE(scattered(model, noise, slopes).isApprox(all, 1e-9));
@@ -110,8 +110,8 @@ TEST_F(AlignPicture, AgreesWithTheRimsAndSaysSo) {
   EXPECT_GT(a.pictures->independent, 10);
   EXPECT_LT(a.pictures->independent, 3.0 * double(a.pictures->pixels));
   for (std::size_t i = 0; i < 6; ++i) EXPECT_LE(a.covariance[7 * i], 1.05 * before.covariance[7 * i]) << i;
-  EXPECT_LT(norm(rotation_vector_of(normalized(a.world_from_object->rotation *
-                                               conjugate(truth_.bodies[0].world_from_object.rotation)))),
+  EXPECT_LT(norm(rotation_vector_of(
+                normalized(a.world_from_object->rotation * conjugate(truth_.bodies[0].world_from_object.rotation)))),
             2e-3);
   EXPECT_THAT(read_file(folder_ / "page.html"), HasSubstr("By the pictures"));
 }
@@ -124,8 +124,7 @@ TEST_F(AlignPicture, KeepsTheRimsWhereThePicturesContradictThemAndWarns) {
   const std::size_t channels = picture.channels.size();
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
-      for (std::size_t c = 0; c < channels; ++c)
-        picture.at(x, y, int(c)) *= float(std::exp(3.0 * x / picture.width));
+      for (std::size_t c = 0; c < channels; ++c) picture.at(x, y, int(c)) *= float(std::exp(3.0 * x / picture.width));
   io::write_picture(folder_ / d.files.at("p").path, picture);
   const Ended plain = align(text), refined = align(text, {"--picture", "--html", "page.html"});
   ASSERT_EQ(refined.status, plain.status) << refined.err;
