@@ -63,18 +63,16 @@ const std::vector<Field<AlignedPictures>>& aligned_pictures_fields() {
       field("photographs", &P::photographs, "", "that were compared").range(0, infinite),
       field("pixels", &P::pixels, "", "of these, inside objects and on the ground").range(0, infinite),
       field("independent", &P::independent, "", "independent values that these amount to").range(0, infinite),
-      field("correlation_px", &P::correlation_px, "px", "side of a square of pixels whose errors are one error")
-          .range(0, infinite),
-      field("relative_error", &P::relative_error, "", "rms of what is left over rms of what is seen")
-          .range(0, infinite),
+      field("correlation_px", &P::correlation_px, "px", "side of a square that is one error").range(0, infinite),
+      field("relative_error", &P::relative_error, "", "rms left over rms seen").range(0, infinite),
       field("relative_error_rims", &P::relative_error_rims, "", "the same at the rims' answer").range(0, infinite),
-      field("chi2", &P::chi2, "", "of the move from the rims' answer, by the rims' covariance").range(0, infinite),
+      field("chi2", &P::chi2, "", "of the move, by the rims' covariance").range(0, infinite),
       field("chi2_limit", &P::chi2_limit, "", "its 99 % point").range(0, infinite),
       field("numbers", &P::numbers, "", "free numbers that it counts").range(0, infinite),
-      field("move_px", &P::move_px, "px", "rms over the rims' points of how far they move").range(0, infinite),
+      field("move_px", &P::move_px, "px", "of the rims' points, rms").range(0, infinite),
       field("sigma_px", &P::sigma_px, "px", "what the rims state of these points, rms").range(0, infinite),
       field("world_from_object", &P::world_from_object, "", "by rims and pictures, taken or not"),
-      field("covariance", &P::covariance, "", "6 x 6, of that pose, as the alignment's")};
+      field("covariance", &P::covariance, "", "6 x 6, of that pose")};
   return table;
 }
 
@@ -92,15 +90,15 @@ const std::vector<Field<Alignment>>& alignment_fields() {
       field("centre_m", &A::centre_m, "m", "middle of the object's box, in the world"),
       field("scale", &A::scale, "", "factors along the mesh's own axes"),
       sigma_field(&A::sigma),
-      field("rms_px", &A::rms_px, "px", "normal offset of the rims' points that count").range(0, infinite),
-      field("sigma_px", &A::sigma_px, "px", "standard deviation of one point, by what is left").range(0, infinite),
-      field("correlation_px", &A::correlation_px, "px", "length of rim whose errors are one error").range(0, infinite),
+      field("rms_px", &A::rms_px, "px", "offset of points that count").range(0, infinite),
+      field("sigma_px", &A::sigma_px, "px", "of one point, by what is left").range(0, infinite),
+      field("correlation_px", &A::correlation_px, "px", "of rim that is one error").range(0, infinite),
       field("explained", &A::explained, "", "share of the model's rims that has points beside it").range(0, 1),
       field("open", &A::open, "", "what no rim holds, in words"),
       field("candidates", &A::candidates, "", "where ambiguous: all poses that fit, best first"),
       field("lights", &A::lights, "", "lamps that its shadows place"),
       field("cameras", &A::cameras, "", "cameras that were moved with it"),
-      field("pictures", &A::pictures, "", "what the pictures themselves say, by align --picture")};
+      field("pictures", &A::pictures, "", "by align --picture")};
   return table;
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "alignment/picture_fit.h"
+#include "manifest/image_list.h"
 #include "manifest/sections/alignment.h"
 #include "manifest/sections/file.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/object.h"
 #include "wedge_scene.h"
 
@@ -32,8 +32,10 @@ class AlignPicture : public WedgeScene {
     const Ended made = run({"render", "true.json", "--spp", "64", "--record", "--out", "r"}, folder_.path());
     EXPECT_EQ(made.status, 0) << made.err;
     const manifest::Document d = manifest::parse_document(made.out, "made.json", folder_.path());
-    std::string text = scene(R"("s": {"path": "shadow.exr"})", R"("s": {"path": "shadow.exr"}, "p": {"path": ")" +
-                                                                   d.files.at(d.images[0].file).path + "\"}");
+    std::string text =
+        scene(R"("s": {"path": "shadow.exr"})",
+              R"("s": {"path": "shadow.exr"}, "p": {"path": ")" +
+                  std::filesystem::relative(manifest::picture_path(d, 0), folder_.path()).string() + "\"}");
     return text.replace(text.find(image), image.size(), R"("file": "p", )" + noisy);
   }
 };
