@@ -51,7 +51,7 @@ const std::vector<Field<AlignmentCandidate>>& alignment_candidate_fields() {
   static const std::vector<Field<C>> table{
       field("world_from_object", &C::world_from_object, "", "takes the object's to world coordinates"),
       field("rms_px", &C::rms_px, "px", "normal offset of the rims' points").range(0, infinite),
-      field("explained", &C::explained, "", "share of the model's rims that has points beside it").range(0, 1)};
+      field("explained", &C::explained, "", "of the model's rims, seen").range(0, 1)};
   return table;
 }
 
@@ -87,16 +87,16 @@ const std::vector<Field<Alignment>>& alignment_fields() {
       field("world_from_object", &A::world_from_object, "", "takes the object's to world coordinates"),
       field("covariance", &A::covariance, "",
             "6 x 6, row by row: of a small motion (rotation vector in rad, then m) in the world at centre_m"),
-      field("centre_m", &A::centre_m, "m", "middle of the object's box, in the world"),
+      field("centre_m", &A::centre_m, "m", "middle of its box, in the world"),
       field("scale", &A::scale, "", "factors along the mesh's own axes"),
       sigma_field(&A::sigma),
       field("rms_px", &A::rms_px, "px", "offset of points that count").range(0, infinite),
       field("sigma_px", &A::sigma_px, "px", "of one point, by what is left").range(0, infinite),
       field("correlation_px", &A::correlation_px, "px", "of rim that is one error").range(0, infinite),
-      field("explained", &A::explained, "", "share of the model's rims that has points beside it").range(0, 1),
+      field("explained", &A::explained, "", "of the model's rims, seen").range(0, 1),
       field("open", &A::open, "", "what no rim holds, in words"),
       field("candidates", &A::candidates, "", "where ambiguous: all poses that fit, best first"),
-      field("lights", &A::lights, "", "lamps that its shadows place"),
+      field("lights", &A::lights, "", "that its shadows place"),
       field("cameras", &A::cameras, "", "cameras that were moved with it"),
       field("pictures", &A::pictures, "", "by align --picture")};
   return table;
