@@ -10,6 +10,7 @@ complete -c align -l carried -x -d 'Lamp that a robots tool carries: it has anot
 complete -c align -l scale-sigma -x -d 'One standard deviation of scales about 1, before anything is seen.'
 complete -c align -l contact -x -d 'One standard deviation of the lowest vertexs height over the ground.'
 complete -c align -l no-contact -d 'The object hangs, or the ground is known badly: it need not touch.'
+complete -c align -l picture -d 'A last step: refine what is free by the photographs themselves, direct light and shading beside the rims. Where that contradicts the rims, their answer is kept, and a warning says so.'
 complete -c align -l reach -x -d 'How far rims may be off at the stated pose, px.'
 complete -c align -l smooth -x -d 'Gaussian that smooths the staircase of binary masks, px.'
 complete -c align -l limit -x -d 'Lost where points lie farther off the rims than this, one standard deviation, px.'

@@ -2,6 +2,7 @@
 // with what else fits as well, what no rim holds, and whether to believe it at all.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct Tried {                                                              // o
   std::vector<double> rms_px{};  // off before each step, and at the end (FitPath)
   double explained = 0;          // of the model's rims, where all of it was fitted
 };
+struct PictureAnswer;  // picture_step.h
 struct Aligned {
   Fitted fitted;
   Verdict verdict = Verdict::lost;
@@ -49,6 +51,7 @@ struct Aligned {
   std::vector<std::string> open;        // directions that no rim holds
   std::vector<std::string> symmetries;  // of rivals that are turns of the found pose about one of the mesh's axes
   std::vector<Tried> tried;             // the one that was taken last
+  std::shared_ptr<const PictureAnswer> pictures{};  // the last step, where it was asked for
   bool stands() const { return verdict == Verdict::found || verdict == Verdict::ambiguous; }  // and may be moved there
 };
 

@@ -32,7 +32,7 @@ std::vector<double> told_radii(const std::vector<LampSize>& sizes) {
 // `restrict` leaves of a question what is asked here.
 void refine(const AlignmentInput& in, const std::function<void(Question&)>& restrict, Fitted& fitted, FitPath* path) {
   for (int round = 0; round < 2; ++round) {
-    Question q = without_bias(in, fitted.setting, told_radii(lamp_sizes(in, fitted.setting)));
+    Question q = unbiased(in, fitted.setting);
     restrict(q);
     fitted = fit_rims(fitted.setting, q, {{.reach_px = 5, .width_px = 0, .most_steps = 15, .small_fall = 1e-7}}, path);
   }
@@ -91,6 +91,10 @@ Fitted fit_together(const AlignmentInput& in, const std::vector<Aligned>& all, S
 }
 
 }  // namespace
+
+Question unbiased(const AlignmentInput& in, const Setting& setting) {
+  return without_bias(in, setting, told_radii(lamp_sizes(in, setting)));
+}
 
 std::vector<Aligned> align_bodies(const AlignmentInput& in, const AlignWish& wish) {
   std::vector<Aligned> all;

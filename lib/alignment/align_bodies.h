@@ -9,5 +9,7 @@ namespace gonio::alignment {
 
 // One for each body. Where there are several, they share one fit, whose sightings are in the order of the input's rims.
 std::vector<Aligned> align_bodies(const AlignmentInput& in, const AlignWish& wish);
+// The input's question without what pixels, smoothing and the lamps' sizes do to rims where these are at `setting`.
+Question unbiased(const AlignmentInput& in, const Setting& setting);
 
 }  // namespace gonio::alignment

@@ -24,6 +24,8 @@ void say(const AlignmentInput& in, const std::vector<Aligned>& all) {
   }
   const auto stands = std::find_if(all.begin(), all.end(), [](const Aligned& a) { return a.stands(); });
   if (stands == all.end()) return;
+  if (const auto& answer = stands->pictures)
+    log(answer->taken ? LogLevel::info : LogLevel::warning, "pictures: " + words_of(*answer));
   for (const std::size_t l : loose_lamps(in, stands->fitted))
     log(LogLevel::warning, "lamp " + in.lamp_words(l) + ": no rim holds its place; it stays where it is stated");
 }
@@ -31,7 +33,9 @@ void say(const AlignmentInput& in, const std::vector<Aligned>& all) {
 }  // namespace
 
 void check_alignment(const manifest::Document& document, const AlignmentRequest& request) {
-  if (request.masks.by == MaskWish::By::given) read_alignment(document, request.input, {});
+  if (request.masks.by != MaskWish::By::given) return;
+  const AlignmentInput in = read_alignment(document, request.input, {});
+  if (request.pictures) check_pictures(document, in);
 }
 
 Verdict align_document(manifest::Document& document, const AlignmentRequest& request) {
@@ -39,7 +43,8 @@ Verdict align_document(manifest::Document& document, const AlignmentRequest& req
   const AlignmentInput in = read_alignment(document, request.input, request.note_input);
   AlignWish wish = request.wish;
   wish.record = !request.page.empty();
-  const std::vector<Aligned> all = align_bodies(in, wish);
+  std::vector<Aligned> all = align_bodies(in, wish);
+  if (request.pictures) refine_by_pictures(document, in, wish, *request.pictures, all);
   say(in, all);
   Verdict worst = Verdict::found;
   document.alignments.clear();

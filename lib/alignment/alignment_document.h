@@ -2,11 +2,13 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "alignment/align.h"
 #include "alignment/alignment_input.h"
 #include "alignment/found_masks.h"
+#include "alignment/picture_step.h"
 #include "manifest/sections/forward.h"
 
 namespace gonio::alignment {
@@ -15,6 +17,7 @@ struct AlignmentRequest {
   MaskWish masks{};
   InputWish input{};
   AlignWish wish{};
+  std::optional<PictureWish> pictures{};                                        // refine by them at the end
   std::filesystem::path page{};                                                 // report to write; empty: none
   std::function<std::filesystem::path(const std::string& name)> output_path{};  // empty: no files
   std::function<void(const std::filesystem::path&)> note_input{};

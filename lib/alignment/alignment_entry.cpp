@@ -106,13 +106,10 @@ manifest::AlignedCamera camera_entry(const AlignmentInput& in, std::size_t stati
 manifest::Pose<frame::World, frame::Object> ground_pose(const AlignmentInput& in, const Fitted& f) {
   const Ground& ground = *f.setting.ground;
   const GroundAxes axes = ground_axes(f.setting);
-  const Vec3 from = in.stated.ground->normal, axis = cross(from, ground.normal);
-  const double sine = norm(axis), angle = std::atan2(sine, dot(from, ground.normal));
-  const Quaternion turn = quaternion_of_rotation_vector(sine > 0 ? axis * (angle / sine) : Vec3{});
+  const Rigid<frame::World, frame::Object> carried =
+      carried_along(in.world_from_ground, *in.stated.ground, ground, axes.pivot_m);
   manifest::Pose<frame::World, frame::Object> pose;
-  pose.rotation = normalized(turn * in.world_from_ground.rotation);
-  const Vec3 place = axes.pivot_m + matrix_of(turn) * (in.world_from_ground.translation_m - axes.pivot_m);
-  pose.translation_m = place - ground.normal * ground.height_m(place);
+  pose.rotation = carried.rotation, pose.translation_m = carried.translation_m;
   const Index tilt = place_of(in.question.freedoms, Block::ground_tilt, 0),
               shift = place_of(in.question.freedoms, Block::ground_shift, 0);
   const std::array<Index, 3> number{tilt, tilt + 1, shift};
@@ -170,6 +167,7 @@ manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const A
   a.open = found.open;
   a.open.insert(a.open.end(), found.symmetries.begin(), found.symmetries.end());
   for (const std::size_t l : loose_lamps(in, f)) a.open.push_back("the place of lamp " + in.lamp_words(l));
+  if (found.pictures) a.pictures = pictures_entry(in, body, *found.pictures);
   for (const Rival& r : found.rivals) a.candidates.push_back({pose_of(r.setting.bodies[body]), r.rms_px, r.explained});
   const std::vector<LampSize> sizes = lamp_sizes(in, f.setting);
   for (std::size_t l = 0; l < in.lamps.size(); ++l)
@@ -180,6 +178,21 @@ manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const A
         place_of(freedoms, Block::lens_focal, in.stated.stations[s].lens) >= 0)
       a.cameras.push_back(camera_entry(in, s, f));
   return a;
+}
+
+manifest::AlignedPictures pictures_entry(const AlignmentInput& in, std::size_t body, const PictureAnswer& answer) {
+  manifest::AlignedPictures p;
+  p.verdict = answer.taken ? "taken" : "refused", p.why = answer.why;
+  p.photographs = static_cast<std::int64_t>(answer.photographs), p.pixels = static_cast<std::int64_t>(answer.pixels);
+  p.independent = answer.independent, p.correlation_px = answer.correlation_px;
+  p.relative_error = answer.relative_error, p.relative_error_rims = answer.relative_before;
+  p.chi2 = answer.chi2, p.chi2_limit = answer.chi2_limit, p.numbers = static_cast<std::int64_t>(answer.numbers);
+  p.move_px = answer.move_px, p.sigma_px = answer.sigma_px;
+  p.world_from_object = pose_of(answer.fitted.setting.bodies[body]);
+  const auto& freedoms = in.question.freedoms;
+  p.covariance =
+      joint(answer.fitted, place_of(freedoms, Block::body_turn, body), place_of(freedoms, Block::body_shift, body));
+  return p;
 }
 
 void enter_figures(const SightingFit& fit, manifest::Outline& outline) {

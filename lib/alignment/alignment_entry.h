@@ -2,11 +2,14 @@
 #pragma once
 #include "alignment/align.h"
 #include "alignment/alignment_input.h"
+#include "alignment/picture_step.h"
 #include "manifest/sections/alignment.h"
 
 namespace gonio::alignment {
 
 manifest::Alignment entry_of(const AlignmentInput& in, std::size_t body, const Aligned& found);
+// What pictures say of the body, of all freedoms.
+manifest::AlignedPictures pictures_entry(const AlignmentInput& in, std::size_t body, const PictureAnswer& answer);
 void enter_figures(const SightingFit& fit, manifest::Outline& outline);
 
 // Lamps that are asked for, and whose place no rim holds: known no better than to half of their distance.

@@ -209,6 +209,28 @@ void show_differences(report::Page& page, const manifest::Document& document, co
   }
 }
 
+// What the pictures themselves say, where they were asked.
+void show_pictures(report::Page& page, const PictureAnswer& a) {
+  page.section("By the pictures");
+  page.paragraph("Rims and pictures together: " + words_of(a) + ".");
+  if (!a.taken)
+    page.paragraph(
+        "All that stands on this page is the rims' answer. That of rims and pictures is in the manifest, "
+        "alignments/pictures.");
+  page.key_numbers(
+      {{"rims move", report::number_text(a.move_px, 2), "px", format("of %.3f px that they state", a.sigma_px)},
+       {"chi-square of the move", report::number_text(a.chi2, 3), "",
+        format("of %zu numbers, limit %.1f", a.numbers, a.chi2_limit)},
+       {"pixels", std::to_string(a.pixels), "", format("worth %.0f independent values", a.independent)},
+       {"errors are alike over", report::number_text(a.correlation_px, 2), "px", "side of a square"}});
+  report::TableText t{.caption = "Root mean square of what is left, over that of what is seen.",
+                      .columns = {{"Picture", "", false}, {"At the rims' answer", "%"}, {"With the pictures", "%"}},
+                      .rows = {}};
+  for (const PictureAnswer::Photograph& p : a.each)
+    t.rows.push_back({p.image, report::number_text(100 * p.before, 3), report::number_text(100 * p.after, 3)});
+  page.table(t);
+}
+
 void show_convergence(report::Page& page, const AlignmentInput& in, const std::vector<Aligned>& all) {
   page.section("Convergence");
   std::vector<report::Plot> plots;
@@ -240,6 +262,11 @@ std::string alignment_page(const manifest::Document& document, const AlignmentIn
   }
   for (const std::size_t lamp : loose_lamps(in, f))
     page.paragraph("No rim holds the place of lamp " + in.lamp_words(lamp) + ".");
+  for (const Aligned& a : all)
+    if (a.pictures) {
+      show_pictures(page, *a.pictures);
+      break;
+    }
   show_differences(page, document, in, f);
   show_convergence(page, in, all);
   page.section("What is left");

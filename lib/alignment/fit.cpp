@@ -251,26 +251,40 @@ Setting settle_rims(const Setting& start, const Question& question, const std::v
   return go_down(start, question, stages, seen_points(question), path).setting;
 }
 
+namespace {
+
+void find_figures(Fitted& f, const Question& question, const std::vector<SeenPoints>& seen, double reach_px) {
+  f.sightings.resize(question.sightings.size());
+  double squares = 0, counted = 0, explained = 0, met = 0, variance = 0;
+  for (std::size_t i = 0; i < f.sightings.size(); ++i) {
+    const double share = f.sightings[i].share;
+    f.sightings[i] = offsets_of(f.setting, question.sightings[i], seen[i], reach_px);
+    f.sightings[i].share = share;
+    const SightingFit& s = f.sightings[i];
+    const auto n = static_cast<double>(s.counted);
+    squares += n * s.rms_px * s.rms_px, variance += n * s.sigma_px * s.sigma_px, counted += n;
+    explained += n * s.explained, met += n * s.met;
+  }
+  if (!(counted > 0)) return;
+  f.rms_px = std::sqrt(squares / counted), f.sigma_px = std::sqrt(variance / counted);
+  f.explained = explained / counted, f.met = met / counted;
+}
+
+}  // namespace
+
+void measure_rims(Fitted& fitted, const Question& question) {
+  find_figures(fitted, question, seen_points(question), stages_from(0).back().reach_px);
+}
+
 Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages, FitPath* path) {
   const std::vector<SeenPoints> seen = seen_points(question);
   Descent down = go_down(start, question, stages, seen, path);
   Fitted f;
   f.setting = std::move(down.setting), f.descended = down.last, f.cost = down.last.cost;
   const Stage last = stages.back();
-  f.sightings.resize(question.sightings.size());
-  double squares = 0, counted = 0, explained = 0, met = 0, variance = 0;
-  for (std::size_t i = 0; i < f.sightings.size(); ++i) {
-    f.sightings[i] = offsets_of(f.setting, question.sightings[i], seen[i], last.reach_px);
-    const SightingFit& s = f.sightings[i];
-    const auto n = static_cast<double>(s.counted);
-    down.sigma[i] = s.sigma_px, f.sightings[i].share = down.shares[i];
-    squares += n * s.rms_px * s.rms_px, variance += n * s.sigma_px * s.sigma_px, counted += n;
-    explained += n * s.explained, met += n * s.met;
-  }
-  if (counted > 0) {
-    f.rms_px = std::sqrt(squares / counted), f.sigma_px = std::sqrt(variance / counted);
-    f.explained = explained / counted, f.met = met / counted;
-  }
+  find_figures(f, question, seen, last.reach_px);
+  for (std::size_t i = 0; i < f.sightings.size(); ++i)
+    down.sigma[i] = f.sightings[i].sigma_px, f.sightings[i].share = down.shares[i];
   if (!question.freedoms.empty()) {
     const Rims rims(question, f.setting, last, down.sigma, seen, down.shares);
     find_covariance(f, question, rims.sum(f.setting, true).h, rims.of_points(f.setting));

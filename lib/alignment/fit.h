@@ -49,6 +49,8 @@ struct Fitted {
 // Error(data) where a rim of the start does not exist (behind a camera, above a lamp). `path`, if any, is continued.
 Fitted fit_rims(const Setting& start, const Question& question, const std::vector<Stage>& stages,
                 FitPath* path = nullptr);
+// The figures of its setting's rims anew: sightings, but for their shares, and what is summed up over them.
+void measure_rims(Fitted& fitted, const Question& question);
 // Costs of settings alone, each point's share bounded: for choosing between starts. Infinite where rims do not exist.
 // The question has to outlive it.
 class RimCost {

@@ -71,6 +71,15 @@ GroundAxes ground_axes(const Setting& setting) {
   return {basis.t, basis.b, centre - setting.ground->normal * setting.ground->height_m(centre)};
 }
 
+Rigid<frame::World, frame::Object> carried_along(const Rigid<frame::World, frame::Object>& pose, const Ground& from,
+                                                 const Ground& to, Vec3 pivot_m) {
+  const Vec3 axis = cross(from.normal, to.normal);
+  const double sine = norm(axis), angle = std::atan2(sine, dot(from.normal, to.normal));
+  const Quaternion turn = quaternion_of_rotation_vector(sine > 0 ? axis * (angle / sine) : Vec3{});
+  const Vec3 place = pivot_m + matrix_of(turn) * (pose.translation_m - pivot_m);
+  return {normalized(turn * pose.rotation), place - to.normal * to.height_m(place)};
+}
+
 Setting moved(const Setting& setting, const std::vector<Freedom>& freedoms, const std::vector<double>& change) {
   Setting out = setting;
   std::size_t k = 0;

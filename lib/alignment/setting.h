@@ -83,6 +83,9 @@ struct GroundAxes {
   Vec3 t, b, pivot_m;
 };
 GroundAxes ground_axes(const Setting& setting);
+// A pose on the ground `from` once that is `to`: turned the shortest way about `pivot_m`, its origin on the ground.
+Rigid<frame::World, frame::Object> carried_along(const Rigid<frame::World, frame::Object>& pose, const Ground& from,
+                                                 const Ground& to, Vec3 pivot_m);
 
 // How one place in the picture moves with a world point, and that with the numbers: rows of d(pixel . normal).
 // A rim's place in a picture.

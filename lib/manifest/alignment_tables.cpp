@@ -53,7 +53,28 @@ const std::vector<Field<AlignmentCandidate>>& alignment_candidate_fields() {
   static const std::vector<Field<C>> table{
       field("world_from_object", &C::world_from_object, "", "takes the object's to world coordinates"),
       field("rms_px", &C::rms_px, "px", "normal offset of the rims' points").range(0, infinite),
-      field("explained", &C::explained, "", "share of the model's rims that has points beside it").range(0, 1)};
+      field("explained", &C::explained, "", "of the model's rims, seen").range(0, 1)};
+  return table;
+}
+
+const std::vector<Field<AlignedPictures>>& aligned_pictures_fields() {
+  using P = AlignedPictures;
+  static const std::vector<Field<P>> table{
+      field("verdict", &P::verdict, "", "is that what was written?").one_of({"taken", "refused"}).needed(),
+      field("why", &P::why, "", "in words, where it was refused and the rims' answer stands"),
+      field("photographs", &P::photographs, "", "that were compared").range(0, infinite),
+      field("pixels", &P::pixels, "", "of these, inside objects and on the ground").range(0, infinite),
+      field("independent", &P::independent, "", "independent values that these amount to").range(0, infinite),
+      field("correlation_px", &P::correlation_px, "px", "side of a square that is one error").range(0, infinite),
+      field("relative_error", &P::relative_error, "", "rms left over rms seen").range(0, infinite),
+      field("relative_error_rims", &P::relative_error_rims, "", "the same at the rims' answer").range(0, infinite),
+      field("chi2", &P::chi2, "", "of the move, by the rims' covariance").range(0, infinite),
+      field("chi2_limit", &P::chi2_limit, "", "its 99 % point").range(0, infinite),
+      field("numbers", &P::numbers, "", "free numbers that it counts").range(0, infinite),
+      field("move_px", &P::move_px, "px", "of the rims' points, rms").range(0, infinite),
+      field("sigma_px", &P::sigma_px, "px", "what the rims state of these points, rms").range(0, infinite),
+      field("world_from_object", &P::world_from_object, "", "by rims and pictures, taken or not"),
+      field("covariance", &P::covariance, "", "6 x 6, of that pose")};
   return table;
 }
 
@@ -68,17 +89,18 @@ const std::vector<Field<Alignment>>& alignment_fields() {
       field("world_from_object", &A::world_from_object, "", "takes the object's to world coordinates"),
       field("covariance", &A::covariance, "",
             "6 x 6, row by row: of a small motion (rotation vector in rad, then m) in the world at centre_m"),
-      field("centre_m", &A::centre_m, "m", "middle of the object's box, in the world"),
+      field("centre_m", &A::centre_m, "m", "middle of its box, in the world"),
       field("scale", &A::scale, "", "factors along the mesh's own axes"),
       sigma_field(&A::sigma),
-      field("rms_px", &A::rms_px, "px", "normal offset of the rims' points that count").range(0, infinite),
-      field("sigma_px", &A::sigma_px, "px", "standard deviation of one point, by what is left").range(0, infinite),
-      field("correlation_px", &A::correlation_px, "px", "length of rim whose errors are one error").range(0, infinite),
-      field("explained", &A::explained, "", "share of the model's rims that has points beside it").range(0, 1),
+      field("rms_px", &A::rms_px, "px", "offset of points that count").range(0, infinite),
+      field("sigma_px", &A::sigma_px, "px", "of one point, by what is left").range(0, infinite),
+      field("correlation_px", &A::correlation_px, "px", "of rim that is one error").range(0, infinite),
+      field("explained", &A::explained, "", "of the model's rims, seen").range(0, 1),
       field("open", &A::open, "", "what no rim holds, in words"),
       field("candidates", &A::candidates, "", "where ambiguous: all poses that fit, best first"),
-      field("lights", &A::lights, "", "lamps that its shadows place"),
-      field("cameras", &A::cameras, "", "cameras that were moved with it")};
+      field("lights", &A::lights, "", "that its shadows place"),
+      field("cameras", &A::cameras, "", "cameras that were moved with it"),
+      field("pictures", &A::pictures, "", "by align --picture")};
   return table;
 }
 
@@ -86,6 +108,7 @@ GONIO_RECORD(Outline, outline_fields);
 GONIO_RECORD(AlignedLight, aligned_light_fields);
 GONIO_RECORD(AlignedCamera, aligned_camera_fields);
 GONIO_RECORD(AlignmentCandidate, alignment_candidate_fields);
+GONIO_RECORD(AlignedPictures, aligned_pictures_fields);
 GONIO_RECORD(Alignment, alignment_fields);
 
 }  // namespace gonio::manifest

@@ -139,6 +139,7 @@ void add_results(List& all) {
       listed("alignments", "Written by align: where objects, lamps and cameras are, by rims.", alignment_fields()));
   all.push_back(part("alignments: lights", "Lamps that shadows place.", aligned_light_fields()));
   all.push_back(part("alignments: cameras", "Cameras that moved along.", aligned_camera_fields()));
+  all.push_back(part("alignments: pictures", "The last step, by the pictures themselves.", aligned_pictures_fields()));
   all.push_back(part("alignments: candidates", "Poses that fit as well.", alignment_candidate_fields()));
   all.push_back(listed("renderings", "Written by render.", rendering_fields()));
   all.push_back(listed("comparisons", "Written by compare.", comparison_fields()));

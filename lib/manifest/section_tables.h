@@ -9,6 +9,8 @@
 
 namespace gonio::manifest {
 
+struct AlignedPictures;
+
 using gonio::DhRow;
 
 struct Provenance;  // sections/provenance.h; nobody passes them on
@@ -44,6 +46,7 @@ GONIO_TABLE(Registration, registration_fields);
 GONIO_TABLE(Outline, outline_fields);
 GONIO_TABLE(AlignedLight, aligned_light_fields);
 GONIO_TABLE(AlignedCamera, aligned_camera_fields);
+GONIO_TABLE(AlignedPictures, aligned_pictures_fields);
 GONIO_TABLE(AlignmentCandidate, alignment_candidate_fields);
 GONIO_TABLE(Alignment, alignment_fields);
 GONIO_TABLE(Rendering, rendering_fields);

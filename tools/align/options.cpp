@@ -43,6 +43,7 @@ alignment::AlignmentRequest request_of(cli::Invocation& call) {
   request.wish.most_sigma_px = call.number("limit");
   request.wish.search.directions = static_cast<int>(call.integer("directions"));
   request.wish.search.move_station = request.input.freed.contains("camera") && request.input.held.contains("pose");
+  if (call.flag("picture")) request.pictures.emplace();
   using By = alignment::MaskWish::By;
   const std::map<std::string, By> ways{{"given", By::given},
                                        {"lamps", By::lamps},
@@ -126,6 +127,10 @@ std::vector<cli::Option> options() {
       {.name = "no-contact",
        .help = "The object hangs, or the ground is known badly: it need not touch.",
        .conflicts = {"contact"}},
+      {.name = "picture",
+       .help = "A last step: refine what is free by the photographs themselves, direct light and shading beside the "
+               "rims. Where that contradicts the rims, their answer is kept, and a warning says so.",
+       .conflicts = {"carried"}},
       {.name = "reach",
        .type = Type::number,
        .help = "How far rims may be off at the stated pose, px.",

@@ -33,7 +33,8 @@ const cli::Program& gonio_program() {
       .synopsis = {"[OPTION]... [-i scene.json]", "--from nothing --free scale --out DIR [OPTION]... [-i scene.json]"},
       .options = options(),
       .takes_out = true,
-      .sections_read = {"files", "cameras", "images", "meshes", "objects", "lights", "outlines"},
+      .sections_read = {"files", "cameras", "images", "meshes", "objects", "surfaces", "lights", "mechanisms",
+                        "outlines"},
       .sections_written = {"files", "cameras", "images", "objects", "lights", "mechanisms", "outlines", "alignments",
                            "light_positions"},
       .files =

@@ -14,19 +14,18 @@ constexpr std::size_t enough_images = 3;  // of fewer, one cannot be left out an
 }  // namespace
 
 // Pixels of a cell follow each other in the view's cache.
-void ImagesProblem::cut_into_cells(std::vector<std::vector<std::array<int, 2>>>& chosen) {
+std::vector<std::array<int, 2>> ImagesProblem::in_cells(std::size_t view,
+                                                        const std::vector<std::array<int, 2>>& chosen) {
   const std::size_t cells = relighting::cells_each(recordings_.images.size(), enough_images);
-  if (cells == 1) return;
-  cell_of_.resize(chosen.size());
-  for (std::size_t v = 0; v < chosen.size(); ++v) {
-    std::vector<std::array<int, 2>> in_order;
-    std::uint32_t number = 0;
-    for (const std::vector<std::size_t>& cell : relighting::cells_of(chosen[v], cells)) {
-      for (const std::size_t p : cell) in_order.push_back(chosen[v][p]), cell_of_[v].push_back(number);
-      ++number;
-    }
-    chosen[v] = std::move(in_order);
+  if (cells == 1) return chosen;
+  cell_of_.resize(recordings_.views.size());
+  std::vector<std::array<int, 2>> in_order;
+  std::uint32_t number = 0;
+  for (const std::vector<std::size_t>& cell : relighting::cells_of(chosen, cells)) {
+    for (const std::size_t p : cell) in_order.push_back(chosen[p]), cell_of_[view].push_back(number);
+    ++number;
   }
+  return in_order;
 }
 
 // Groups of an image whose pixels are picked, and where their rows will begin.

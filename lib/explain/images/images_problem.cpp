@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "base/random.h"
 #include "explain/images/conditions.h"
 #include "explain/images/derivatives.h"
 #include "explain/images/misplaced.h"
@@ -14,6 +13,7 @@
 #include "inference/explanation.h"
 #include "manifest/document.h"
 #include "relighting/repeats.h"
+#include "relighting/sampled_pixels.h"
 #include "relighting/shifted_views.h"
 #include "relighting/textures.h"
 #include "relighting/uses.h"
@@ -23,8 +23,6 @@
 namespace gonio::explain::images {
 namespace {
 
-constexpr int tile_px = 8;
-constexpr std::uint64_t pixel_seed = 20;
 constexpr std::size_t most_lamps_with_shadows = 12;  // that follow them: more are surroundings, or light stages
 // Of the places where a texture changes: they tell where things are seen, and little of light.
 constexpr double uneven_share = 0.25;
@@ -32,22 +30,6 @@ constexpr double place_error_px = 0.1;  // of what is seen, between two renderer
 
 std::size_t at(const io::Image& picture, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
-}
-
-// Highest degree of the polynomials of light between surfaces: six, or fewer where many surfaces would make too many
-// terms.
-int degree_for(std::size_t surfaces) {
-  constexpr std::size_t most_terms = 40;
-  int degree = 6;
-  while (degree > 1 && render::Monomials(surfaces, degree).size() > most_terms) --degree;
-  return degree;
-}
-
-// What is seen through glass is not simulated here.
-bool shows_glass(const ViewCache& cache, const Pixel& pixel, const SceneState& state) {
-  for (std::size_t f = pixel.first_facet; f < pixel.first_facet + pixel.facets; ++f)
-    if (state.surfaces[cache.facets[f].surface].model->transmits()) return true;
-  return false;
 }
 
 }  // namespace
@@ -68,15 +50,12 @@ ImagesProblem::ImagesProblem(const manifest::Document& document, const Options& 
   layout_ = read_scene(document, recordings_, surfaces, scene.centre_m);
   settle_textures(scene, layout_);
   monomials_ = std::make_unique<render::Monomials>(surfaces.size(), degree_for(surfaces.size()));
-  std::vector<std::vector<std::array<int, 2>>> chosen(recordings_.views.size());
-  choose_pixels(options.pixels, chosen);
-  cut_into_cells(chosen);
   const Tints tints(scene);
   std::vector<ViewCache> caches;
   cache_options_.shadows = layout_.lights.size() <= most_lamps_with_shadows;
-  for (std::size_t v = 0; v < chosen.size(); ++v) {
-    caches.push_back(
-        build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_, chosen[v], cache_options_));
+  for (std::size_t v = 0; v < recordings_.views.size(); ++v) {
+    caches.push_back(build_cache(*caster_, recordings_.views[v], layout_.lights, *monomials_,
+                                 in_cells(v, pixels_of(v, options.pixels)), cache_options_));
     tints.apply(*caster_, recordings_.views[v], caches.back());
   }
   model_ = std::make_unique<ImageModel>(recordings_, layout_, *monomials_, std::move(caches));
@@ -137,38 +116,12 @@ bool ImagesProblem::excludes(std::size_t candidate, std::size_t other) const {
 
 ImagesProblem::~ImagesProblem() = default;
 
-void ImagesProblem::choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const {
-  const std::size_t per_image = std::max<std::size_t>(200, pixels / recordings_.images.size());
-  for (std::size_t v = 0; v < chosen.size(); ++v) {
-    const int width = recordings_.views[v].model.width_px(), height = recordings_.views[v].model.height_px();
-    std::vector<std::uint8_t> any(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    for (const Recording& image : recordings_.images)
-      if (image.view == v)
-        for (std::size_t i = 0; i < any.size(); ++i) any[i] = any[i] | image.counts[i];
-    const auto counted = static_cast<double>(std::count(any.begin(), any.end(), 1));
-    const double share = std::min(1.0, static_cast<double>(per_image) / std::max(1.0, counted));
-    for (int top = 0; top < height; top += tile_px)
-      for (int left = 0; left < width; left += tile_px) {
-        std::vector<std::array<int, 2>> tile;
-        for (int y = top; y < std::min(height, top + tile_px); ++y)
-          for (int x = left; x < std::min(width, left + tile_px); ++x)
-            if (any[static_cast<std::size_t>(y * width + x)]) tile.push_back({x, y});
-        Random random(pixel_seed, static_cast<std::uint64_t>(v) << 40 | static_cast<std::uint64_t>(top) << 20 |
-                                      static_cast<std::uint64_t>(left));
-        // share of the tile, rounded up or down at random so that the mean is exact
-        const auto take = static_cast<std::size_t>(share * static_cast<double>(tile.size()) + random.uniform());
-        std::size_t taken = 0;
-        for (std::size_t k = 0; k < tile.size() && taken < take; ++k) {
-          const std::size_t other = k + random.below(static_cast<std::uint32_t>(tile.size() - k));
-          std::swap(tile[k], tile[other]);
-          if (!is_even(*scene_, *caster_, recordings_.views[v], tile[k][0], tile[k][1]) &&
-              random.uniform() >= uneven_share)
-            continue;
-          chosen[v].push_back(tile[k]);
-          ++taken;
-        }
-      }
-  }
+std::vector<std::array<int, 2>> ImagesProblem::pixels_of(std::size_t view, std::size_t pixels) const {
+  const auto per_image = static_cast<double>(std::max<std::size_t>(200, pixels / recordings_.images.size()));
+  return choose_pixels(
+      recordings_, view, counted_pixels(recordings_, view), per_image, [&](std::array<int, 2> at, Random& random) {
+        return is_even(*scene_, *caster_, recordings_.views[view], at[0], at[1]) || random.uniform() < uneven_share;
+      });
 }
 
 void ImagesProblem::fill_rows() {

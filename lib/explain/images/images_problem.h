@@ -74,8 +74,8 @@ class ImagesProblem final : public Problem {
                        std::span<double> derivatives) const;
   void bind(const manifest::Document& document);
   void find_exclusions();
-  void choose_pixels(std::size_t pixels, std::vector<std::vector<std::array<int, 2>>>& chosen) const;
-  void cut_into_cells(std::vector<std::vector<std::array<int, 2>>>& chosen);
+  std::vector<std::array<int, 2>> pixels_of(std::size_t view, std::size_t pixels) const;
+  std::vector<std::array<int, 2>> in_cells(std::size_t view, const std::vector<std::array<int, 2>>& chosen);
   void fill_rows();
   void open_groups(std::size_t image);
   void numbers_act_on_cells();

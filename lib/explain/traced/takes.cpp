@@ -7,47 +7,20 @@
 #include "manifest/document.h"
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
-#include "manifest/sections/surface.h"
+#include "relighting/followed.h"
 #include "relighting/recordings.h"
 #include "relighting/scene_state.h"
 #include "render/link.h"
 
-namespace gonio::mechanism {
-const Mechanism& surface_subsurface();
-}
-
 namespace gonio::explain::traced {
 namespace {
 
-enum class Kind { plain, both, beyond };  // for the fast model alone, for both, for the tracer alone
+using relighting::Followed;
 
-// What has a roughness and neither a colour beneath nor an inside.
-bool is_metal(const surface::Model& model) {
-  return relighting::has_parameter(model, "alpha") && !relighting::has_parameter(model, "albedo") &&
-         !relighting::has_parameter(model, "sigma_a_per_m") && !model.transmits();
-}
-
-Kind kind_of(const manifest::Document& document, const std::string& name) {
-  const auto found = document.surfaces.find(name);
-  if (found == document.surfaces.end()) return Kind::plain;
-  const manifest::Surface& surface = found->second;
-  const surface::Model* model = surface::find(surface.model);
-  if (model == nullptr) return Kind::plain;
-  if (model->transmits() || surface.laws.contains("alpha")) return Kind::beyond;
-  if (relighting::has_parameter(*model, "sigma_s_per_m")) return Kind::beyond;
-  const auto alpha = surface.parameters.find("alpha");
-  if (is_metal(*model))
-    return alpha != surface.parameters.end() && alpha->second.scalar() < 0.02 ? Kind::beyond : Kind::both;
-  const auto use = document.mechanisms.find(mechanism::surface_subsurface().id);
-  const bool scatters =
-      use != document.mechanisms.end() && (use->second.on.empty() || std::ranges::count(use->second.on, name) > 0);
-  return scatters ? Kind::both : Kind::plain;
-}
-
-bool any(const manifest::Document& document, Kind least) {
+bool any(const manifest::Document& document, Followed least) {
   return relighting::has_recordings(document) && relighting::knows_lights(document) &&
          std::ranges::any_of(document.objects, [&](const manifest::Object& object) {
-           return kind_of(document, object.surface) >= least;
+           return relighting::followed(document, object.surface) >= least;
          });
 }
 
@@ -56,17 +29,17 @@ bool any(const manifest::Document& document, Kind least) {
 std::vector<std::size_t> surfaces_in_question(const manifest::Document& document, const scene::Scene& scene) {
   std::vector<std::size_t> places;
   for (std::size_t s = 0; s < scene.appearance.surfaces.size(); ++s)
-    if (kind_of(document, scene.appearance.surfaces[s].id) != Kind::plain &&
+    if (relighting::followed(document, scene.appearance.surfaces[s].id) != Followed::fast &&
         std::ranges::any_of(scene.instances, [&](const auto& instance) { return instance.surface == s; }))
       places.push_back(s);
   return places;
 }
 
 bool wants_tracing(const manifest::Document& document) {
-  return any(document, Kind::both);
+  return any(document, Followed::roughly);
 }
 bool beyond_the_fast_model(const manifest::Document& document) {
-  return any(document, Kind::beyond);
+  return any(document, Followed::not_at_all);
 }
 
 std::vector<std::string> behind_the_lens(const manifest::Document& document) {

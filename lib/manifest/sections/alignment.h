@@ -43,6 +43,20 @@ struct AlignmentCandidate {
   std::optional<Pose<frame::World, frame::Object>> world_from_object{};
   double rms_px = 0, explained = 0;
 };
+// What pictures, beside rims, say of where things are: align --picture.
+struct AlignedPictures {
+  std::string verdict{};  // "taken" | "refused": the rims' answer stands
+  std::string why{};      // of what was refused
+  std::int64_t photographs = 0, pixels = 0;
+  double independent = 0;                              // values that pixels amount to
+  double correlation_px = 0;                           // side of a square whose errors are one error
+  double relative_error = 0, relative_error_rims = 0;  // rms left over rms seen; at the rims' answer
+  double chi2 = 0, chi2_limit = 0;                     // of the move, by the rims' covariance
+  std::int64_t numbers = 0;
+  double move_px = 0, sigma_px = 0;  // rms over the rims' points: of the move, and what rims state
+  std::optional<Pose<frame::World, frame::Object>> world_from_object{};
+  std::vector<double> covariance{};  // as Alignment's, about the middle of the object there
+};
 struct Alignment {
   std::string object{};
   std::string verdict{};  // "found" | "ambiguous" | "mirrored" | "lost"
@@ -61,6 +75,7 @@ struct Alignment {
   std::vector<AlignmentCandidate> candidates{};
   std::vector<AlignedLight> lights{};
   std::vector<AlignedCamera> cameras{};
+  std::optional<AlignedPictures> pictures{};
 };
 
 }  // namespace gonio::manifest
