@@ -99,7 +99,8 @@ int main(int argc, char** argv) {
   std::vector<int> numbers;
   for (int i = 1; i < argc; ++i) numbers.push_back(std::atoi(argv[i]));
   if (numbers.empty()) numbers = {1, 2, 3, 4, 5, 6};
-  const auto scratch = std::filesystem::temp_directory_path() / format("align-recordings-%d", static_cast<int>(::getpid()));
+  const auto scratch =
+      std::filesystem::temp_directory_path() / format("align-recordings-%d", static_cast<int>(::getpid()));
   for (const int number : numbers) {
     std::filesystem::create_directories(scratch);
     const Off off = off_of(std::filesystem::path(data) / "recordings", number, scratch);
@@ -107,10 +108,11 @@ int main(int argc, char** argv) {
     const auto beyond = std::count_if(off.z.begin(), off.z.end(), [](double z) { return !(std::abs(z) < 2); });
     double squares = 0;
     for (const double z : off.z) squares += z * z;
-    std::printf("  beyond two standard deviations: measured %d of %zu (required 1 and fewer); root mean square z %.2f\n"
-                "  lamps: measured %.2f %% of their distance (required 1); mean rim offset: measured %.3f px (required 0.1)\n",
-                static_cast<int>(beyond), off.z.size(), std::sqrt(squares / static_cast<double>(off.z.size())),
-                100 * off.lamps_share, off.mean_px);
+    std::printf(
+        "  beyond two standard deviations: measured %d of %zu (required 1 and fewer); root mean square z %.2f\n"
+        "  lamps: measured %.2f %% of their distance (required 1); mean rim offset: measured %.3f px (required 0.1)\n",
+        static_cast<int>(beyond), off.z.size(), std::sqrt(squares / static_cast<double>(off.z.size())),
+        100 * off.lamps_share, off.mean_px);
     std::fflush(stdout);
   }
   return 0;
