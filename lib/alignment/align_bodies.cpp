@@ -41,9 +41,9 @@ void refine(const AlignmentInput& in, const std::function<void(Question&)>& rest
 }
 
 // Poses of bodies whose rims leave waves that masks do not make are lost, whatever their intervals say.
-void judge_waves(const Question& question, std::size_t body, Aligned& a) {
+void judge_waves(const Question& question, std::size_t body, double most_sigma_px, Aligned& a) {
   if (!a.stands()) return;
-  const RimWaves waves = rim_waves(question, a.fitted, body);
+  const RimWaves waves = rim_waves(question, a.fitted, body, most_sigma_px);
   if (!waves.beyond()) return;
   a.verdict = Verdict::lost;
   a.why = format(
@@ -115,7 +115,7 @@ std::vector<Aligned> align_bodies(const AlignmentInput& in, const AlignWish& wis
       refine(
           in, [](Question&) {}, all[0].fitted, wish.record ? &path : nullptr);
       go_on(all[0], path);
-      judge_waves(in.question, 0, all[0]);
+      judge_waves(in.question, 0, wish.most_sigma_px, all[0]);
     }
     return all;
   }
@@ -138,7 +138,7 @@ std::vector<Aligned> align_bodies(const AlignmentInput& in, const AlignWish& wis
       go_on(a, path);
       a.fitted = together;
       judge_open(in.question, b, wish, a);
-      judge_waves(in.question, b, a);
+      judge_waves(in.question, b, wish.most_sigma_px, a);
       continue;
     }
     // Its own figures, beside what all share.

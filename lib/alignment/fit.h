@@ -42,8 +42,6 @@ struct Fitted {
   optim::Descended descended;
   std::vector<SightingFit> sightings;
   double rms_px = 0, sigma_px = 0, correlation_px = 0, explained = 0, met = 0;
-  double common_px = 0;  // errors that pieces of rims, or all of one, have in common (rim_components.h): the larger of
-                         // those of objects' rims and of shadows'
   // Of the numbers of the freedoms, with correlated errors; of what nothing holds, huge: see `open`.
   Eigen::MatrixXd covariance;
 };

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "alignment/rim_components.h"
 #include "alignment/seen_points.h"
 #include "linear/solve.h"
 
@@ -51,30 +50,49 @@ double correlation_length(const std::vector<const Sighting*>& sightings, const s
   return length;
 }
 
-// Mean square of the weighted offsets, in units of sigma.
-double variance_of(const SightingFit& fit, const RimSlopes& along) {
-  double sum = 0;
-  for (const std::size_t i : along.used)
-    sum += fit.weight[i] * fit.weight[i] * fit.offset_px[i] * fit.offset_px[i] / (fit.sigma_px * fit.sigma_px);
-  return along.used.empty() ? 0 : sum / static_cast<double>(along.used.size());
-}
-
-// M of fit.h for one sighting, by the numbers; `variance`: of weighted offsets in units of sigma.
-void add_meat(const Sighting& sighting, const RimSlopes& along, double length_px, double variance,
-              Eigen::MatrixXd& meat) {
+// M of fit.h for one sighting, by the numbers, and its variance of weighted offsets in units of sigma.
+void add_meat(const Setting& s, const Question& q, std::size_t index, const SightingFit& fit, double length_px,
+              double repeated, Eigen::MatrixXd& meat) {
+  const Sighting& sighting = q.sightings[index];
+  const auto count = static_cast<Index>(numbers_of(q.freedoms));
+  const GroundAxes axes = ground_axes(s);
+  const ModelRim rim(s, sighting.subject);
+  std::vector<std::size_t> used;
+  std::vector<Eigen::VectorXd> slopes;
+  std::vector<double> row(static_cast<std::size_t>(count));
+  Eigen::VectorXd all_along = Eigen::VectorXd::Zero(count);
+  double variance = 0, offsets = 0, weights = 0;
+  for (std::size_t i = 0; i < sighting.points.size(); ++i) {
+    if (!(fit.weight[i] > 0)) continue;
+    const auto place =
+        rim.nearest(sighting.points[i].pixel, sighting.points[i].outward, std::abs(fit.offset_px[i]) + 1e-6);
+    if (!place) continue;
+    slopes_of(s, q.freedoms, axes, sighting.subject.station, sighting.subject.body, sighting.subject.lamp,
+              place->mesh_point, place->outward, row.data());
+    used.push_back(i);
+    slopes.push_back(Eigen::Map<const Eigen::VectorXd>(row.data(), count) * (fit.share / fit.sigma_px));
+    variance += fit.weight[i] * fit.weight[i] * fit.offset_px[i] * fit.offset_px[i] / (fit.sigma_px * fit.sigma_px);
+    all_along += fit.weight[i] * slopes.back();
+    offsets += fit.weight[i] * fit.offset_px[i] / fit.sigma_px, weights += fit.weight[i];
+  }
+  if (used.empty()) return;
+  const auto points_used = static_cast<double>(used.size());
+  variance /= points_used;
+  // A mask that is too wide all around: what its mean offset has beyond the mean of that many independent errors.
+  const double common = offsets * offsets / (weights * weights) - variance * length_px / points_used;
+  if (common > 0) meat += repeated * common * all_along * all_along.transpose();
+  variance *= repeated;
   const auto& points = sighting.points;
-  const auto& used = along.used;
   // An exponential of that length is positive definite whatever the arcs are; the measured autocorrelation need not be.
   const double decay = 2 / std::max(length_px, 1e-3), reach = 6 / decay;
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const Eigen::VectorXd own = along.slopes.row(static_cast<Index>(i)).transpose();
-    Eigen::VectorXd near = 0.5 * own;
+    Eigen::VectorXd near = 0.5 * slopes[i];
     for (std::size_t j = i + 1; j < used.size() && points[used[j]].loop == points[used[i]].loop; ++j) {
       const double lag = points[used[j]].arc_px - points[used[i]].arc_px;
       if (lag > reach) break;
-      if (length_px > 1.05) near += std::exp(-decay * lag) * along.slopes.row(static_cast<Index>(j)).transpose();
+      if (length_px > 1.05) near += std::exp(-decay * lag) * slopes[j];
     }
-    meat += variance * (own * near.transpose() + near * own.transpose());
+    meat += variance * (slopes[i] * near.transpose() + near * slopes[i].transpose());
   }
 }
 
@@ -115,36 +133,11 @@ std::vector<double> repetition(const Question& q, const Fitted& f) {
 
 }  // namespace
 
-namespace {
-
-// J'WJ, with small numbers on the diagonal, so that what nothing holds gets a large inverse and no infinite one;
-// numbers in units in which each counts alike, so that nothing is lost to rounding.
-struct Bread {
-  Eigen::VectorXd unit;
-  Eigen::MatrixXd inverse;
-};
-constexpr double ridge = 1e-10;  // as if that much were known, and as badly as that
-Bread bread_of(const Eigen::MatrixXd& h) {
-  const Index count = h.rows();
-  Bread bread{Eigen::VectorXd(count), {}};
-  for (Index i = 0; i < count; ++i) bread.unit(i) = 1 / std::sqrt(std::max(h(i, i), 1e-20));
-  Eigen::MatrixXd scaled = bread.unit.asDiagonal() * h * bread.unit.asDiagonal();
-  scaled.diagonal().array() += ridge;
-  const Eigen::MatrixXd inverse = linear::Ldlt(scaled).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count, count)));
-  bread.inverse = bread.unit.asDiagonal() * inverse * bread.unit.asDiagonal();
-  return bread;
-}
-
-}  // namespace
-
 void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eigen::MatrixXd& by_points) {
   const auto count = static_cast<Index>(numbers_of(q.freedoms));
   Eigen::MatrixXd of_points = Eigen::MatrixXd::Zero(count, count);
   double correlation = 0, weight = 0;
   const std::vector<double> repeated = repetition(q, f);
-  std::vector<RimSlopes> slopes;
-  for (std::size_t i = 0; i < q.sightings.size(); ++i) slopes.push_back(rim_slopes(f.setting, q, i, f.sightings[i]));
-  std::vector<ShortErrors> short_errors(q.sightings.size());
   double all_points = 1;
   for (const SightingFit& fit : f.sightings) all_points += static_cast<double>(fit.counted);
   for (const bool shadows : {false, true}) {
@@ -158,27 +151,29 @@ void find_covariance(Fitted& f, const Question& q, Eigen::MatrixXd h, const Eige
     for (const SightingFit* fit : fits) points += static_cast<double>(fit->counted);
     const double length = correlation_length(sightings, fits, static_cast<double>(count) * points / all_points);
     correlation += points * length, weight += points;
-    for (std::size_t i = 0; i < q.sightings.size(); ++i) {
-      if (q.sightings[i].subject.lamp.has_value() != shadows) continue;
-      const SightingFit& fit = f.sightings[i];
-      const double variance = repeated[i] * variance_of(fit, slopes[i]);
-      short_errors[i] = {length, variance * fit.sigma_px * fit.sigma_px * length};
-      add_meat(q.sightings[i], slopes[i], length, variance, of_points);
-    }
+    for (std::size_t i = 0; i < q.sightings.size(); ++i)
+      if (q.sightings[i].subject.lamp.has_value() == shadows)
+        add_meat(f.setting, q, i, f.sightings[i], length, repeated[i], of_points);
   }
   // Priors and contacts are independent of all that: their part of M is their part of H. The points' part of H has the
   // weights of the squares; the slope of the loss's own slope is what counts for where the minimum moves (Huber 1964).
   Eigen::MatrixXd meat = h - by_points + of_points;
   h += (bend_of_loss(f) - 1) * by_points;
   f.correlation_px = weight > 0 ? correlation / weight : 0;
-  const Bread bread = bread_of(h);
-  for (Index i = 0; i < count; ++i) meat(i, i) += ridge / (bread.unit(i) * bread.unit(i));
+  // In units in which every number counts alike, so that nothing is lost to rounding; what nothing holds gets a large
+  // variance; what is not seen at all as well, without its square running over.
+  Eigen::VectorXd unit(count);
+  for (Index i = 0; i < count; ++i) unit(i) = 1 / std::sqrt(std::max(h(i, i), 1e-20));
+  Eigen::MatrixXd scaled = unit.asDiagonal() * h * unit.asDiagonal();
+  constexpr double ridge = 1e-10;  // as if that much were known, and as badly as that
+  scaled.diagonal().array() += ridge;
+  for (Index i = 0; i < count; ++i) meat(i, i) += ridge / (unit(i) * unit(i));
+  const Eigen::MatrixXd inverse = linear::Ldlt(scaled).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count, count)));
+  const Eigen::MatrixXd h_inverse = unit.asDiagonal() * inverse * unit.asDiagonal();
   // As many numbers as were found are missing among the independent errors that are left.
   const double independent = weight / std::max(1.0, f.correlation_px);
   const double lost = std::min(0.5, static_cast<double>(count) / std::max(1.0, independent));
-  const CommonErrors common = common_errors(q, f, slopes, short_errors, bread.inverse);
-  f.common_px = std::sqrt(std::max(common.mask_px2[0] + common.piece_px2[0], common.mask_px2[1] + common.piece_px2[1]));
-  f.covariance = bread.inverse * (meat / (1 - lost) + common.meat) * bread.inverse;
+  f.covariance = h_inverse * meat * h_inverse / (1 - lost);
 }
 
 }  // namespace gonio::alignment

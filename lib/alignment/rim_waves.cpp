@@ -11,12 +11,14 @@ namespace gonio::alignment {
 namespace {
 
 constexpr double piece_px = 32, alike_px = 16;  // of a mean, and over which masks may err alike
+constexpr double usual_limit_px = 0.75;
 constexpr double false_alarm = 1e-3;
 constexpr double least_share = 0.5;  // of a piece's points that the loss has to count
 
 }  // namespace
 
-RimWaves rim_waves(const Question& question, const Fitted& fitted, std::size_t body) {
+RimWaves rim_waves(const Question& question, const Fitted& fitted, std::size_t body, double most_sigma_px) {
+  const double coarser = most_sigma_px / usual_limit_px;
   RimWaves waves;
   double squares = 0;
   for (std::size_t k = 0; k < fitted.sightings.size(); ++k) {
@@ -31,7 +33,7 @@ RimWaves rim_waves(const Question& question, const Fitted& fitted, std::size_t b
       if (!(fit.weight[i] > 0)) continue;
       Sum& sum = sums[{points[i].loop, static_cast<long>(points[i].arc_px / piece_px)}];
       sum.offset += fit.weight[i] * fit.offset_px[i], sum.weight += fit.weight[i];
-      sum.expected += points[i].sigma_px * points[i].sigma_px, sum.points += 1;
+      sum.expected += std::pow(coarser * points[i].sigma_px, 2), sum.points += 1;
     }
     for (const auto& [place, sum] : sums) {
       if (sum.points < 0.5 * piece_px || sum.weight < least_share * sum.points) continue;

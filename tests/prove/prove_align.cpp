@@ -65,11 +65,11 @@ Outcome outcome_of(const WorldWish& wish) {
   for (std::size_t i = 0; i < miss.error.size(); ++i) o.z.push_back(miss.error[i] / miss.sigma[i]);
   char text[300];
   std::snprintf(text, sizeof text,
-                "%s, %d views, %d lamps: %s, turn %.4f rad, shift %.2f mm, %.1f %% seen, sigma %.2f px, alike %.0f, in "
-                "common %.3f px, waves %.3f; %s",
+                "%s, %d views, %d lamps: %s, turn %.4f rad, shift %.2f mm, %.1f %% seen, sigma %.2f px, alike %.0f, "
+                "waves %.3f; %s",
                 solid.name.c_str(), wish.views, wish.lamps, word_of(a.verdict).c_str(), miss.turn_rad,
                 1e3 * miss.shift_m, 100 * a.fitted.explained, a.fitted.sigma_px, a.fitted.correlation_px,
-                a.fitted.common_px, rim_waves(world.input.question, a.fitted, 0).rms_px, a.why.c_str());
+                rim_waves(world.input.question, a.fitted, 0).rms_px, a.why.c_str());
   o.line = text;
   return o;
 }
@@ -96,9 +96,9 @@ Broken broken_outcome(Breakage breakage, std::size_t number, std::uint64_t seed)
     o.wrong = !(worst < 3), o.said = a.verdict != Verdict::found;
     o.line = format(
         "%zu views, %zu lamps: %s, largest z %.1f, turn %.4f rad, shift %.2f mm, sigma %.2f px, alike over "
-        "%.0f px, in common %.3f px, waves %.3f; %s",
+        "%.0f px, waves %.3f; %s",
         world.truth.stations.size(), world.truth.lamps_m.size(), word_of(a.verdict).c_str(), worst, miss.turn_rad,
-        1e3 * miss.shift_m, a.fitted.sigma_px, a.fitted.correlation_px, a.fitted.common_px,
+        1e3 * miss.shift_m, a.fitted.sigma_px, a.fitted.correlation_px,
         rim_waves(world.input.question, a.fitted, 0).rms_px, a.why.c_str());
   } catch (const Error& error) {
     o.wrong = o.said = true, o.line = error.what();
