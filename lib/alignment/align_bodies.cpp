@@ -6,6 +6,8 @@
 
 #include "alignment/lamp_size.h"
 #include "alignment/rim_bias.h"
+#include "alignment/rim_waves.h"
+#include "base/text.h"
 
 namespace gonio::alignment {
 namespace {
@@ -36,6 +38,18 @@ void refine(const AlignmentInput& in, const std::function<void(Question&)>& rest
     restrict(q);
     fitted = fit_rims(fitted.setting, q, {{.reach_px = 5, .width_px = 0, .most_steps = 15, .small_fall = 1e-7}}, path);
   }
+}
+
+// Poses of bodies whose rims leave waves that masks do not make are lost, whatever their intervals say.
+void judge_waves(const Question& question, std::size_t body, double most_sigma_px, Aligned& a) {
+  if (!a.stands()) return;
+  const RimWaves waves = rim_waves(question, a.fitted, body, most_sigma_px);
+  if (!waves.beyond()) return;
+  a.verdict = Verdict::lost;
+  a.why = format(
+      "the rims' offsets have long waves, %.2f px over pieces of 32 px (masks make %.2f px): shape, size, "
+      "focal length, lamps or ground are not as stated",
+      waves.rms_px, waves.limit_px);
 }
 
 // The way of all together goes on where each one's ended.
@@ -105,6 +119,7 @@ std::vector<Aligned> align_bodies(const AlignmentInput& in, const AlignWish& wis
       refine(
           in, [](Question&) {}, all[0].fitted, wish.record ? &path : nullptr);
       go_on(all[0], path);
+      judge_waves(in.question, 0, wish.most_sigma_px, all[0]);
     }
     return all;
   }
@@ -127,6 +142,7 @@ std::vector<Aligned> align_bodies(const AlignmentInput& in, const AlignWish& wis
       go_on(a, path);
       a.fitted = together;
       judge_open(in.question, b, wish, a);
+      judge_waves(in.question, b, wish.most_sigma_px, a);
       continue;
     }
     // Its own figures, beside what all share.

@@ -281,7 +281,11 @@ World world_of(const WorldWish& wish) {
   }
   world.input.bodies = {"solid"}, world.input.cameras = {"camera"};
   for (std::size_t v = 0; v < s.stations.size(); ++v)
-    for (std::size_t l = 0; l < s.lamps_m.size(); ++l) add_rims(world, photographed(s, v, l, wish, random), v, l, wish);
+    for (std::size_t l = 0; l < s.lamps_m.size(); ++l) {
+      Labels labels = photographed(s, v, l, wish, random);
+      if (wish.spoil) wish.spoil(labels, v, random);
+      add_rims(world, labels, v, l, wish);
+    }
   Question& q = world.input.question;
   q.freedoms = {{Block::body_turn, 0}, {Block::body_shift, 0}};
   if (wish.scale_sigma > 0) q.freedoms.push_back({Block::body_scale, 0, wish.scale_sigma});

@@ -6,6 +6,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -35,6 +36,8 @@ struct WorldWish {
   bool from_nothing = false;  // else 5 degrees and 10 mm off, and lamps by a centimetre
   double scale_sigma = 0;     // of the solid's three true scales about 1, which are free then
   int size_px = 480;
+  // What is done to a photograph's masks before rims are taken of them; empty: nothing.
+  std::function<void(struct Labels&, std::size_t station, std::mt19937_64&)> spoil{};
 };
 struct World {
   AlignmentInput input;  // its stated setting is where the search begins
