@@ -80,31 +80,36 @@ End finish(const Setting& start, const Question& q, const AlignWish& wish, const
 // Nothing else fits better, or: this does.
 std::optional<Setting> find_rivals(const Question& q, std::size_t body, const std::vector<End>& others, Aligned& a) {
   const Fitted& f = a.fitted;
-  a.rivals.clear(), a.symmetries.clear();
+  a.rivals.clear(), a.symmetries.clear(), a.any_turn.clear();
   const RimCost cost(q);
   const double sigma = std::max(f.sigma_px, 0.02), best = squares_of(f.setting, cost, sigma);
   const double same = std::max(1.0, f.correlation_px);
   std::optional<Setting> better;
   double least = -4;
-  const auto consider = [&](const Setting& setting) -> double {
+  struct Considered {
+    double worse = HUGE_VAL;
+    Vec3 turn;  // from the found pose, mesh frame
+  };
+  const auto consider = [&](const Setting& setting) -> Considered {
     const Fitted other =
         fit_rims(setting, q,
-                 {{.reach_px = 8, .width_px = 1.5, .both_ways = true, .every = 2, .most_steps = 12, .small_fall = 1e-4},
-                  {.reach_px = 5, .most_steps = 12, .small_fall = 1e-6}});
-    const double turn =
-        norm(rotation_vector_of(normalized(other.setting.bodies[body].world_from_object.rotation *
-                                           conjugate(f.setting.bodies[body].world_from_object.rotation))));
-    if (turn < 0.02) return HUGE_VAL;  // the same one
+                 stages_from(0));  // as the found one was fitted: rims err unequally, and other weights end elsewhere
+    const Vec3 turn = rotation_vector_of(normalized(conjugate(f.setting.bodies[body].world_from_object.rotation) *
+                                                    other.setting.bodies[body].world_from_object.rotation));
+    if (norm(turn) < 0.02) return {};  // the same one
     const double worse = (squares_of(other.setting, cost, sigma) - best) / same;
     if (worse < least) least = worse, better = other.setting;
     if (worse < 9) a.rivals.push_back({other.setting, worse, other.rms_px, other.explained});
-    return worse;
+    return {worse, turn};
   };
   for (const End& other : others)
     if (merit(other.fitted) > 0.7 * merit(f)) consider(other.fitted.setting);
   std::vector<std::pair<Vec3, std::vector<double>>> about;  // axes, and by how much a turn looks alike
   for (const Turned& turned : turned_alike(f, q, body)) {
-    if (!(consider(turned.setting) < 9)) continue;
+    const Considered other = consider(turned.setting);
+    if (!(other.worse < 9)) continue;
+    // One that went back and ended turned about another axis says nothing of this one.
+    if (norm(cross(other.turn, turned.axis)) > 0.1 * norm(other.turn)) continue;
     if (about.empty() || !(about.back().first == turned.axis)) about.push_back({turned.axis, {}});
     about.back().second.push_back(turned.angle_rad * 180 / pi);
   }
@@ -112,6 +117,7 @@ std::optional<Setting> find_rivals(const Question& q, std::size_t body, const st
     std::string by;
     if (angles.size() >= 6) {
       by = "any angle";
+      a.any_turn.push_back(axis);
     } else {
       for (const double angle : angles) by += (by.empty() ? "" : ", ") + format("%.0f", angle);
       by += " degrees";

@@ -50,6 +50,7 @@ struct Aligned {
   std::vector<Rival> rivals;            // that fit as well
   std::vector<std::string> open;        // directions that no rim holds
   std::vector<std::string> symmetries;  // of rivals that are turns of the found pose about one of the mesh's axes
+  std::vector<Vec3> any_turn;           // unit axes of the mesh about which it looks alike by any angle
   std::vector<Tried> tried;             // the one that was taken last
   std::shared_ptr<const PictureAnswer> pictures{};  // the last step, where it was asked for
   bool stands() const { return verdict == Verdict::found || verdict == Verdict::ambiguous; }  // and may be moved there

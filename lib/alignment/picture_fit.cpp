@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "linear/solve.h"
 #include "linear/symmetric_eigen.h"
@@ -252,6 +253,23 @@ std::vector<std::vector<double>> picture_slopes(const PictureModel& model, const
       for (std::size_t r = 0; r < below.size(); ++r) out[k][r] = (out[k][r] - below[r]) / (2 * step);
     }
   return out;
+}
+
+double share_left(const PictureModel& model, const Setting& setting) {
+  const std::vector<double> shown = model.predict(setting);
+  struct Sums {
+    double yy = 0, ym = 0, mm = 0;
+  };
+  std::map<std::array<std::size_t, 3>, Sums> sums;  // surface, brightness, colour
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const PictureRow& row = model.rows()[i / 3];
+    const double y = row.observed[static_cast<int>(i % 3)];
+    Sums& s = sums[{row.surface, model.brightness()[row.image], i % 3}];
+    s.yy += y * y, s.ym += y * shown[i], s.mm += shown[i] * shown[i];
+  }
+  double left = 0, seen = 0;
+  for (const auto& [place, s] : sums) left += s.yy - (s.mm > 0 ? s.ym * s.ym / s.mm : 0), seen += s.yy;
+  return seen > 0 ? std::sqrt(std::max(0.0, left) / seen) : 0;
 }
 
 PictureFit fit_pictures(const PictureModel& model, const Fitted& rims, const std::vector<Freedom>& freedoms,

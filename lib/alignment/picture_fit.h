@@ -34,6 +34,10 @@ struct PictureFit {
 std::vector<std::vector<double>> picture_slopes(const PictureModel& model, const Setting& at,
                                                 const std::vector<Freedom>& freedoms, const std::vector<bool>& free);
 
+// What settings leave of the pictures, rms over what is seen, where each surface's colours under each brightness have
+// the factor that suits them best: for settings far apart.
+double share_left(const PictureModel& model, const Setting& setting);
+
 // From `rims`, whose covariance is that of `freedoms`. `most_steps` of the last descent. The noise is measured, or
 // taken from another fit to the same model, so that costs can be compared.
 PictureFit fit_pictures(const PictureModel& model, const Fitted& rims, const std::vector<Freedom>& freedoms,

@@ -6,6 +6,7 @@
 
 #include "alignment/align_bodies.h"
 #include "alignment/alignment_entry.h"
+#include "alignment/symmetry.h"
 #include "base/text.h"
 #include "manifest/document.h"
 #include "manifest/sections/object.h"
@@ -82,32 +83,95 @@ PictureAnswer answer_of(const PictureModel& model, const AlignmentInput& in, con
   return a;
 }
 
+// Turns about an axis that is the pictures' to say: those of a scan that they like better than their neighbours, the
+// best first.
+std::vector<Setting> turns_liked(const PictureModel& model, const Fitted& rims, Vec3 axis) {
+  constexpr std::size_t steps = 120, most = 2;
+  const Vec3 middle = principal_axes(*rims.setting.bodies[0].shape).middle_m;
+  std::vector<Setting> turned;
+  for (std::size_t k = 0; k < steps; ++k)
+    turned.push_back(turned_about(rims.setting, 0, middle, axis, 2 * pi * static_cast<double>(k) / steps));
+  std::vector<double> left(steps);
+  for (std::size_t k = 0; k < steps; ++k) left[k] = share_left(model, turned[k]);
+  std::vector<std::size_t> liked;
+  for (std::size_t k = 1; k < steps; ++k)  // 0 is where the rims ended
+    if (left[k] < left[(k + steps - 1) % steps] && left[k] <= left[(k + 1) % steps]) liked.push_back(k);
+  std::ranges::sort(liked, {}, [&](std::size_t k) { return left[k]; });
+  liked.resize(std::min(liked.size(), most));
+  std::vector<Setting> settings;
+  for (const std::size_t k : liked) settings.push_back(turned[k]);
+  return settings;
+}
+
+// Several ways may lead to one end.
+bool same_pose(const Setting& one, const Setting& other) {
+  constexpr double near_rad = 0.02;
+  const auto &a = one.bodies[0].world_from_object, &b = other.bodies[0].world_from_object;
+  return norm(rotation_vector_of(normalized(conjugate(a.rotation) * b.rotation))) < near_rad;
+}
+
+// Of a body that looks alike by any angle about an axis rims state nothing of that turn, whatever its facets hold.
+void free_turns(Fitted& rims, const std::vector<Freedom>& freedoms, const std::vector<Vec3>& axes) {
+  constexpr double sigma_rad = 0.5;
+  Eigen::Index at = 0;
+  for (const Freedom& f : freedoms) {
+    if (f.block == Block::body_turn && f.which == 0)
+      for (const Vec3 axis : axes) {
+        const Vec3 a = rims.setting.bodies[0].world_from_object.rotate(axis) * sigma_rad;
+        const Eigen::Vector3d v(a.x, a.y, a.z);
+        rims.covariance.block<3, 3>(at, at) += v * v.transpose();
+      }
+    at += static_cast<Eigen::Index>(f.size());
+  }
+}
+
 // Poses that rims cannot tell from the best one, as pictures tell them. The best of all is returned, with the rims' fit
 // that it began at; rivals that pictures contradict are gone from `body`.
 struct Best {
   Fitted rims;
   PictureFit fit;
 };
-Best best_of(const PictureModel& model, const AlignmentInput& in, const Fitted& rims, Aligned& body) {
-  Best best{rims, fit_pictures(model, rims, in.question.freedoms)};
-  const PictureNoise noise = best.fit.noise;
-  std::vector<std::pair<Rival, double>> kept;
-  double first = best.fit.cost;  // of where the rims ended
-  for (std::size_t r = 0; r < body.rivals.size() && r < most_rivals; ++r) {
-    const Fitted there = fit_rims(body.rivals[r].setting, unbiased(in, body.rivals[r].setting),
-                                  {{.reach_px = 5, .width_px = 0, .most_steps = 15, .small_fall = 1e-7}});
-    PictureFit fit = fit_pictures(model, there, in.question.freedoms, &noise);
-    const double cost = fit.cost + body.rivals[r].worse;
-    kept.push_back({{fit.setting, body.rivals[r].worse, there.rms_px, there.explained}, cost});
-    if (cost < best.fit.cost) fit.cost = cost, best = {there, std::move(fit)};
+Best best_of(const PictureModel& model, const AlignmentInput& in, Fitted rims, Aligned& body) {
+  const std::vector<Vec3> any_turn = body.any_turn;
+  free_turns(rims, in.question.freedoms, any_turn);
+  std::vector<Rival> asked = std::move(body.rivals);
+  for (const Vec3 axis : any_turn) {
+    asked.clear();  // some turns of many
+    for (Setting& setting : turns_liked(model, rims, axis)) asked.push_back({std::move(setting)});
   }
-  const bool all_asked = body.rivals.size() <= most_rivals;
-  kept.push_back({{rims.setting, 0, rims.rms_px, rims.explained}, first});
+  const bool all_asked = asked.size() <= most_rivals;
+  asked.resize(std::min(asked.size(), most_rivals));
+  struct Start {
+    Fitted rims;
+    double worse = 0, left = 0;
+  };
+  std::vector<Start> starts{{rims, 0, share_left(model, rims.setting)}};
+  for (const Rival& rival : asked) {
+    Fitted there = fit_rims(rival.setting, unbiased(in, rival.setting),
+                            {{.reach_px = 5, .width_px = 0, .most_steps = 15, .small_fall = 1e-7}});
+    free_turns(there, in.question.freedoms, any_turn);
+    const double left = share_left(model, there.setting);
+    starts.push_back({std::move(there), rival.worse, left});
+  }
+  // Noise is what is left where the pictures fit best: a wrong pose would take its errors for it.
+  std::ranges::stable_sort(starts, {}, &Start::left);
+  Best best{starts[0].rims, fit_pictures(model, starts[0].rims, in.question.freedoms)};
+  const PictureNoise noise = best.fit.noise;
+  best.fit.cost += starts[0].worse;
+  std::vector<std::pair<Rival, double>> kept{
+      {{best.fit.setting, starts[0].worse, best.rims.rms_px, best.rims.explained}, best.fit.cost}};
+  for (std::size_t k = 1; k < starts.size(); ++k) {
+    const Start& start = starts[k];
+    PictureFit fit = fit_pictures(model, start.rims, in.question.freedoms, &noise);
+    fit.cost += start.worse;
+    kept.push_back({{fit.setting, start.worse, start.rims.rms_px, start.rims.explained}, fit.cost});
+    if (fit.cost < best.fit.cost) best = {start.rims, std::move(fit)};
+  }
   body.rivals.clear();
   for (auto& [rival, cost] : kept)
-    if (cost > best.fit.cost && cost < best.fit.cost + as_well)
+    if (cost < best.fit.cost + as_well && !same_pose(rival.setting, best.fit.setting))
       rival.worse = cost - best.fit.cost, body.rivals.push_back(rival);
-  if (body.rivals.empty() && all_asked) body.symmetries.clear();
+  if (body.rivals.empty() && all_asked) body.symmetries.clear(), body.any_turn.clear();
   return best;
 }
 

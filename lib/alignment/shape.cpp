@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "mesh/topology.h"
+
 namespace gonio::alignment {
 namespace {
 
@@ -20,8 +22,10 @@ Shape::Shape(std::vector<Vec3> positions_m, std::span<const std::array<std::uint
     : positions_(std::move(positions_m)) {
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
+  const std::vector<std::uint32_t> same = mesh::welded(positions_);
   bool first = true;
-  for (const auto& t : triangles) {
+  for (const auto& given : triangles) {
+    const std::array<std::uint32_t, 3> t{same[given[0]], same[given[1]], same[given[2]]};
     const Vec3 a = positions_[t[0]], b = positions_[t[1]], c = positions_[t[2]];
     const Vec3 n = cross(b - a, c - a);
     if (!(norm(n) > 0)) continue;

@@ -25,7 +25,8 @@ struct RimEdge {
 class Shape {
  public:
   Shape() = default;
-  // Frame of the mesh, metres. Triangles without area are left out: they cover nothing.
+  // Frame of the mesh, metres. Triangles without area are left out: they cover nothing. Vertices at one place are one:
+  // files repeat them along seams of textures, where no rim runs.
   Shape(std::vector<Vec3> positions_m, std::span<const std::array<std::uint32_t, 3>> triangles);
 
   const std::vector<Vec3>& positions_m() const { return positions_; }

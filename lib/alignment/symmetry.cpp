@@ -10,9 +10,7 @@
 #include "linear/symmetric_eigen.h"
 
 namespace gonio::alignment {
-namespace {
-
-Setting turned(const Setting& setting, std::size_t body, Vec3 middle, Vec3 axis, double angle) {
+Setting turned_about(const Setting& setting, std::size_t body, Vec3 middle, Vec3 axis, double angle) {
   Setting out = setting;
   auto& pose = out.bodies[body].world_from_object;
   const Vec3 before = pose * middle;
@@ -20,8 +18,6 @@ Setting turned(const Setting& setting, std::size_t body, Vec3 middle, Vec3 axis,
   pose.translation_m += before - pose * middle;
   return out;
 }
-
-}  // namespace
 
 std::string axis_words(Vec3 v) {
   // An axis has no sign: the largest component counts upwards.
@@ -74,7 +70,7 @@ std::vector<Turned> turned_alike(const Fitted& fitted, const Question& question,
   std::vector<Turned> all;
   for (const Vec3 axis : axes.axis)
     for (const double degrees : {180.0, 120.0, 240.0, 90.0, 270.0, 72.0, 288.0, 60.0, 300.0, 45.0, 315.0, 20.0, 340.0})
-      all.push_back({turned(base, body, axes.middle_m, axis, degrees * pi / 180), axis, degrees * pi / 180});
+      all.push_back({turned_about(base, body, axes.middle_m, axis, degrees * pi / 180), axis, degrees * pi / 180});
   // Far apart, all that is beyond reach costs the same: what looks alike costs about what the found pose does.
   const Stage judge{.reach_px = 12, .width_px = 3, .both_ways = true, .every = 4};
   const RimCost judged(question);

@@ -18,6 +18,9 @@ struct Axes {
 };
 Axes principal_axes(const Shape& shape);
 
+// The body turned about an axis of its mesh through `middle_m`, mesh frame.
+Setting turned_about(const Setting& setting, std::size_t body, Vec3 middle_m, Vec3 axis, double angle_rad);
+
 struct Turned {
   Setting setting;
   Vec3 axis;  // mesh frame

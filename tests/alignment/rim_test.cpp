@@ -7,6 +7,7 @@
 #include <random>
 
 #include "alignment/coverage.h"
+#include "alignment/shape.h"
 
 namespace gonio::alignment {
 namespace {
@@ -133,6 +134,34 @@ TEST(Coverage, BeyondThePictureNothingIsLost) {
   std::vector<Side> sides;
   for (std::size_t i = 0; i < 4; ++i) sides.push_back({c[i], c[(i + 1) % 4]});
   for (const float v : coverage_of(sides, 20, 10)) EXPECT_FLOAT_EQ(v, 1);
+}
+
+// A tube whose vertices are repeated along a seam, as files do whose texture begins anew there.
+TEST(Rim, DoesNotRunAlongSeamsOfTextures) {
+  constexpr std::uint32_t around = 12;
+  std::vector<Vec3> closed, cut;
+  std::vector<std::array<std::uint32_t, 3>> triangles, of_cut;
+  for (std::uint32_t i = 0; i <= around; ++i)
+    for (const double z : {0.0, 1.0}) {
+      const double turn = 6.283185307179586 * (i % around) / around;
+      cut.push_back({std::cos(turn), std::sin(turn), z});
+      if (i < around) closed.push_back(cut.back());
+    }
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % around), c = 2 * (i + 1);
+    triangles.push_back({a, b, a + 1}), triangles.push_back({a + 1, b, b + 1});
+    of_cut.push_back({a, c, a + 1}), of_cut.push_back({a + 1, c, c + 1});
+  }
+  const Shape whole(closed, triangles), sewn(cut, of_cut);
+  EXPECT_EQ(whole.open_edges(), 24u);
+  EXPECT_EQ(sewn.open_edges(), 24u);
+  std::vector<std::uint8_t> faces;
+  std::vector<RimEdge> one, other;
+  for (const Vec3 eye : {Vec3{4, 1, 2}, Vec3{5, -0.1, 0.3}, Vec3{-3, 2, 5}}) {
+    whole.rim_edges(eye, false, faces, one);
+    sewn.rim_edges(eye, false, faces, other);
+    EXPECT_EQ(one.size(), other.size());
+  }
 }
 
 }  // namespace
