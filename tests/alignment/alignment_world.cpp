@@ -248,6 +248,19 @@ std::vector<std::uint8_t> filled(const Setting& setting, const RimSubject& subje
   return out;
 }
 
+namespace {
+
+void photograph_all(World& world, const WorldWish& wish, std::mt19937_64& random) {
+  for (std::size_t v = 0; v < world.truth.stations.size(); ++v)
+    for (std::size_t l = 0; l < world.truth.lamps_m.size(); ++l) {
+      Labels labels = photographed(world.truth, v, l, wish, random);
+      if (wish.spoil) wish.spoil(labels, v, random);
+      add_rims(world, labels, v, l, wish);
+    }
+}
+
+}  // namespace
+
 World world_of(const WorldWish& wish) {
   const Solid& solid = solids()[wish.solid];
   std::mt19937_64 random(wish.seed);
@@ -280,12 +293,7 @@ World world_of(const WorldWish& wish) {
     world.input.lamps.push_back("lamp " + std::to_string(l)), world.input.lamp_stated.push_back(true);
   }
   world.input.bodies = {"solid"}, world.input.cameras = {"camera"};
-  for (std::size_t v = 0; v < s.stations.size(); ++v)
-    for (std::size_t l = 0; l < s.lamps_m.size(); ++l) {
-      Labels labels = photographed(s, v, l, wish, random);
-      if (wish.spoil) wish.spoil(labels, v, random);
-      add_rims(world, labels, v, l, wish);
-    }
+  photograph_all(world, wish, random);
   Question& q = world.input.question;
   q.freedoms = {{Block::body_turn, 0}, {Block::body_shift, 0}};
   if (wish.scale_sigma > 0) q.freedoms.push_back({Block::body_scale, 0, wish.scale_sigma});
