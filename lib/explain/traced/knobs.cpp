@@ -168,7 +168,7 @@ class Declaration : private KnobBuilder {
     std::vector<std::size_t> knobs;
     const std::size_t count = stated.value.size();
     const bool alike = std::ranges::all_of(stated.value, [&](double v) { return v == stated.value[0]; });
-    if (count > 1 && !alike) return free_colour(surface.id, key, stated);
+    if (count > 1 && !alike) return free_colour(surface.id, key, stated, lower, upper);
     const double value = stated.value[0];
     const std::size_t response =
         respond(nodes_about(value, lower, upper), value, [id = surface.id, key](Document& d, double x) {
@@ -185,9 +185,15 @@ class Declaration : private KnobBuilder {
       d.surfaces.at(id).sigma[key].assign(sigma.begin(), sigma.end());
     };
   }
-  // Three numbers that begin apart: a factor on each, in one series of pictures.
-  void free_colour(const std::string& id, const std::string& key, const manifest::Parameter& stated) {
-    const std::vector<double> nodes{0.4, 0.7, 1, 1.4, 2.2};
+  // Three numbers that begin apart: a factor on each, in one series of pictures, as far as none leaves its bounds.
+  void free_colour(const std::string& id, const std::string& key, const manifest::Parameter& stated, double lower,
+                   double upper) {
+    const auto [smallest, largest] = std::ranges::minmax(stated.value);
+    const double least = smallest > 0 ? lower / smallest : 0, most = largest > 0 ? std::max(1.0, upper / largest) : 1;
+    std::vector<double> nodes{0.4, 0.7, 1, 1.4, 2.2};
+    std::erase_if(nodes, [&](double x) { return x != 1 && (x < least || x > most); });
+    if (nodes.back() == 1 && most > 1) nodes.push_back(most);
+    if (nodes.front() == 1 && least < 1) nodes.insert(nodes.begin(), least);
     const std::size_t response = respond(nodes, 1, [id, key](Document& d, double x) {
       for (double& v : d.surfaces.at(id).parameters.at(key).value) v *= x;
     });

@@ -139,6 +139,26 @@ TEST(Traced, OnePictureIsCutIntoGroupsThatShareNoBlock) {
   }
 }
 
+// A colour that is nearly white already: no factor may make it more than white.
+TEST(Traced, FactorsKeepColoursWithinTheirBounds) {
+  const tests::ScratchFolder folder;
+  recorded(folder, clear, clear, 1);
+  std::string text = glass_manifest(clear);
+  const std::string stated = R"("albedo":[0.6,0.5,0.4])";
+  text.replace(text.find(stated), stated.size(), R"("albedo":{"value":[0.95,0.5,0.4],"free":true})");
+  const auto problem = traced_problem(manifest::parse_document(text, "white", folder.path()),
+                                      {.repeats = {}, .pixels = 300, .paths = 2e4});
+  int factors = 0;
+  for (const Parameter& p : problem->parameters()) {
+    if (!p.name.starts_with("surfaces/table/albedo/") || !p.name.ends_with("/factor")) continue;
+    ++factors;
+    EXPECT_LE(0.95 * p.upper, 1.0);
+    EXPECT_GT(p.upper, 1.0);
+    EXPECT_LT(p.lower, 1.0);
+  }
+  EXPECT_EQ(factors, 3);
+}
+
 // Between the nodes, and with several numbers off at once, against pictures that are traced there.
 TEST(Traced, PredictsWhatIsTraced) {
   const tests::ScratchFolder folder;
