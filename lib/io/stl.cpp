@@ -56,7 +56,6 @@ class StlWords {
   StlWords(std::string_view text, const StlCorners& corners) : rest_(text), corners_(corners) {}
 
   std::string_view next() {
-    constexpr std::string_view blank = " \t\r\n";
     const auto first = rest_.find_first_not_of(blank);
     if (first == std::string_view::npos) corners_.refuse("is cut off");
     rest_.remove_prefix(first);
@@ -77,17 +76,16 @@ class StlWords {
       corners_.refuse("has \"" + std::string(word.substr(0, 20)) + "\" where a number belongs");
     return value;
   }
-  void end_line() { rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size())); }
+  void end_line() { rest_.remove_prefix(std::min(rest_.find_first_of("\r\n"), rest_.size())); }
+  bool at_end() const { return rest_.find_first_not_of(blank) == std::string_view::npos; }
 
  private:
+  static constexpr std::string_view blank = " \t\r\n";  // lines end as any system ends them
   std::string_view rest_;
   const StlCorners& corners_;
 };
 
-void read_ascii(std::string_view file, StlCorners& corners) {
-  StlWords words(file, corners);
-  words.expect("solid");
-  words.end_line();  // its name
+void read_facets(StlWords& words, StlCorners& corners) {
   for (std::string_view word = words.next(); word != "endsolid"; word = words.next()) {
     if (word != "facet") corners.refuse("has \"" + std::string(word.substr(0, 20)) + "\" where \"facet\" belongs");
     words.expect("normal");
@@ -102,6 +100,17 @@ void read_ascii(std::string_view file, StlCorners& corners) {
     words.expect("endloop");
     words.expect("endfacet");
   }
+}
+
+// One solid after the other: together they are the mesh.
+void read_ascii(std::string_view file, StlCorners& corners) {
+  StlWords words(file, corners);
+  do {
+    words.expect("solid");
+    words.end_line();  // its name
+    read_facets(words, corners);
+    words.end_line();  // its name again
+  } while (!words.at_end());
 }
 
 }  // namespace

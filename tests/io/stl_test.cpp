@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "data.h"
 #include "io/little_endian.h"
@@ -63,6 +65,19 @@ TEST(Stl, BothEncodingsGiveTheSameMesh) {
     EXPECT_EQ(again.positions_m, mesh.positions_m);
     EXPECT_EQ(again.triangles, mesh.triangles);
   }
+}
+
+TEST(Stl, LinesEndAsTheyLikeAndSolidsFollowEachOther) {
+  std::string old = ascii;
+  std::ranges::replace(old, '\n', '\r');
+  EXPECT_EQ(parse_stl(old, "part.stl").triangles, parse_stl(ascii, "part.stl").triangles);
+  std::string second = ascii;
+  for (std::size_t at = 0; (at = second.find("vertex 0 0 0")) != std::string::npos;)
+    second.replace(at, 12, "vertex 0 0 7");
+  const TriangleMesh both = parse_stl(ascii + second, "part.stl");
+  EXPECT_EQ(both.triangles.size(), 4u);
+  EXPECT_EQ(both.positions_m.size(), 5u);
+  EXPECT_THAT(complaint(std::string(ascii) + "solid cut"), HasSubstr("triangle 2 is cut off"));
 }
 
 TEST(Stl, RefusesWhatIsBroken) {
