@@ -39,6 +39,10 @@ void check_alignment(const manifest::Document& document, const AlignmentRequest&
 }
 
 Verdict align_document(manifest::Document& document, const AlignmentRequest& request) {
+  for (const std::string& name : request.input.carried)  // before masks are looked for, which takes a while
+    if (!document.lights.contains(name))
+      throw Error(Exit::usage, "--carried", "names \"" + name + "\", which is no light of the manifest",
+                  "give one of its lights");
   find_masks(document, request.masks, request.output_path, request.note_input);
   const AlignmentInput in = read_alignment(document, request.input, request.note_input);
   AlignWish wish = request.wish;

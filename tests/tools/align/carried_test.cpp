@@ -122,7 +122,7 @@ TEST_F(AlignCarried, PhotographsAtOnePoseShareOnePlace) {
 }
 
 TEST_F(AlignCarried, RefusesInOneLine) {
-  refused(carried(), 64, "--carried: names \"b\", which throws no shadow", {"--carried", "b"});
+  refused(carried(), 64, "--carried: names \"b\", which is no light of the manifest", {"--carried", "b"});
   refused(carried({0, 1, 2, 3}, 3), 65, "/images/3/base_from_tool: is missing, and a tool carries \"a\"",
           {"--carried", "a"});
 }
