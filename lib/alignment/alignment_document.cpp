@@ -33,16 +33,16 @@ void say(const AlignmentInput& in, const std::vector<Aligned>& all) {
 }  // namespace
 
 void check_alignment(const manifest::Document& document, const AlignmentRequest& request) {
+  for (const std::string& name : request.input.carried)  // before masks are looked for, which takes a while
+    if (!document.lights.contains(name))
+      throw Error(Exit::usage, "--carried", "names \"" + name + "\", which is no light of the manifest",
+                  "give one of its lights");
   if (request.masks.by != MaskWish::By::given) return;
   const AlignmentInput in = read_alignment(document, request.input, {});
   if (request.pictures) check_pictures(document, in);
 }
 
 Verdict align_document(manifest::Document& document, const AlignmentRequest& request) {
-  for (const std::string& name : request.input.carried)  // before masks are looked for, which takes a while
-    if (!document.lights.contains(name))
-      throw Error(Exit::usage, "--carried", "names \"" + name + "\", which is no light of the manifest",
-                  "give one of its lights");
   find_masks(document, request.masks, request.output_path, request.note_input);
   const AlignmentInput in = read_alignment(document, request.input, request.note_input);
   AlignWish wish = request.wish;
