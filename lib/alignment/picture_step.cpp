@@ -135,11 +135,12 @@ Best best_of(const PictureModel& model, const AlignmentInput& in, Fitted rims, A
   const std::vector<Vec3> any_turn = body.any_turn;
   free_turns(rims, in.question.freedoms, any_turn);
   std::vector<Rival> asked = std::move(body.rivals);
+  if (!any_turn.empty()) asked.clear();  // some turns of many
   for (const Vec3 axis : any_turn) {
-    asked.clear();  // some turns of many
     for (Setting& setting : turns_liked(model, rims, axis)) asked.push_back({std::move(setting)});
   }
-  const bool all_asked = asked.size() <= most_rivals;
+  // About one axis all turns were looked at; a ball has more than those about each of three.
+  const bool all_asked = asked.size() <= most_rivals && any_turn.size() <= 1;
   asked.resize(std::min(asked.size(), most_rivals));
   struct Start {
     Fitted rims;

@@ -4,7 +4,8 @@
 // state: d' C^-1 d, d the change from the rims' answer and C its covariance, has to stay below the 99 % point of
 // chi-square of as many numbers. Beyond that the two contradict each other, and the rims, which ask no surface, keep
 // their answer; so they do where the model misses too much of what the photographs show. Directions that rims leave
-// open cost nothing there, and are the pictures' to say.
+// open cost nothing there, and are the pictures' to say; so is the turn of a body that looks alike by any angle about
+// an axis: all turns are looked at, and what facets hold of them counts for nothing.
 #pragma once
 #include <memory>
 #include <string>

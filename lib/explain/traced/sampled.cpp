@@ -10,13 +10,15 @@
 #include "base/text.h"
 #include "mesh/curvature.h"
 #include "relighting/cells.h"
+#include "relighting/sampled_pixels.h"
 #include "render/camera_ray.h"
 #include "render/vertex.h"
 
 namespace gonio::explain::traced {
 namespace {
 
-constexpr int tile_px = 8;
+using relighting::tile_px;
+
 constexpr std::size_t least_groups = 8;
 constexpr std::uint64_t seed = 127;
 constexpr double share_of_objects = 2.0 / 3;
