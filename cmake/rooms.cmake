@@ -56,6 +56,10 @@ function(gonio_finish_library)
     "std::span<const gonio::surface::Law* const> gonio::surface::all_laws()" gonio::surface ${law_files})
   gonio_registry(${GONIO_GENERATED}/lights.cpp Model light/light.h
     "std::span<const gonio::light::Model* const> gonio::light::all_models()" gonio::light ${light_files})
+  file(GLOB microstructure_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/relief/microstructures/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/microstructures.cpp Microstructure relief/microstructure.h
+    "std::span<const gonio::relief::Microstructure* const> gonio::relief::all_microstructures()"
+    gonio::relief::microstructures ${microstructure_files})
   file(GLOB solver_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/nrsfm/solvers/*.cpp)
   gonio_registry(${GONIO_GENERATED}/nrsfm_solvers.cpp Solver nrsfm/solve/solver.h
     "std::span<const gonio::nrsfm::Solver* const> gonio::nrsfm::all_solvers()" gonio::nrsfm::solvers ${solver_files})
@@ -101,7 +105,7 @@ function(gonio_finish_library)
     list(APPEND objects $<TARGET_OBJECTS:${room}>)
   endforeach()
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
-      ${GONIO_GENERATED}/table_models.cpp ${bindings}
+      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/microstructures.cpp ${bindings}
       ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp
       ${GONIO_GENERATED}/volume_formats.cpp ${GONIO_GENERATED}/drivers.cpp ${GONIO_GENERATED}/view_patterns.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)

@@ -41,6 +41,7 @@
 #include "manifest/sections/pattern.h"
 #include "manifest/sections/placement.h"
 #include "manifest/sections/plan.h"
+#include "manifest/sections/print.h"
 #include "manifest/sections/projection.h"
 #include "manifest/sections/provenance.h"
 #include "manifest/sections/reconstruction.h"
@@ -94,6 +95,7 @@ void for_each_section(D& d, const Visit& visit) {
   visit("contrasts", d.contrasts);
   visit("reliefs", d.reliefs);
   visit("ground_noises", d.ground_noises);
+  visit("prints", d.prints);
   visit("volumes", d.volumes);
   visit("markers", d.markers);
   visit("placements", d.placements);

@@ -61,6 +61,7 @@ struct Document {
   std::vector<Contrast> contrasts;
   std::map<std::string, ReliefMap> reliefs;
   std::map<std::string, GroundNoiseFit> ground_noises;
+  std::map<std::string, Print> prints;
   std::map<std::string, Volume> volumes;
   std::vector<Marker> markers;
   std::vector<Placement> placements;

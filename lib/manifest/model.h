@@ -22,7 +22,7 @@ struct ParameterInfo {
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
   std::string meaning;
 };
-enum class Family { surface, light, law };
+enum class Family { surface, light, law, microstructure };
 enum class Attachment { none, picture, table };  // the file that a model needs: pixels, or a table that it reads itself
 struct ModelInfo {
   Family family;
@@ -36,6 +36,7 @@ struct ModelInfo {
   bool attachment_as_sent = false;
   bool takes_base = false;         // surfaces: lies on another surface, `base`
   bool takes_environment = false;  // lights: the attachment may be one of the manifest's environments
+  bool takes_expression = false;   // micro-structures: says itself what it is, `expression`
 };
 
 std::span<const ModelInfo* const> models(Family family);            // sorted by id

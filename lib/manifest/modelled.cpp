@@ -8,6 +8,7 @@
 #include "manifest/section_tables.h"
 #include "manifest/sections/light.h"
 #include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/print.h"
 #include "manifest/sections/surface.h"
 
 namespace gonio::manifest {
@@ -37,6 +38,7 @@ bool takes(const ModelInfo& info, const std::string& key) {
   if (key == "file") return info.attachment != Attachment::none;
   if (key == "environment") return info.takes_environment;
   if (key == "base") return info.takes_base;
+  if (key == "expression") return info.takes_expression;
   return true;
 }
 
@@ -171,6 +173,14 @@ const std::vector<Field<LawUse>>& law_use_fields() {
       field("law", &LawUse::law, "", "how the parameter varies: a name of gonio-surfaces(7)").needed()};
   return table;
 }
+const std::vector<Field<MicrostructureUse>>& microstructure_use_fields() {
+  static const std::vector<Field<MicrostructureUse>> table{
+      field("model", &MicrostructureUse::model, "", "which: one of those below"),
+      field("file", &MicrostructureUse::file, "", "of a model that has a picture: its file id"),
+      field("expression", &MicrostructureUse::expression, "",
+            "of the model expression: over u_m, v_m along the surface and x_m, y_m, z_m on the platform")};
+  return table;
+}
 const std::vector<Field<MechanismUse>>& mechanism_use_fields() {
   static const std::vector<Field<MechanismUse>> table{
       custom<MechanismUse>(
@@ -220,6 +230,19 @@ Value Codec<LawUse>::schema() {
 }
 Value law_definition() {
   return modelled_definition(Family::law, &LawUse::law, law_use_fields());
+}
+
+MicrostructureUse Codec<MicrostructureUse>::read(const Value& v, const std::string& place) {
+  return read_modelled(Family::microstructure, &MicrostructureUse::model, microstructure_use_fields(), v, place);
+}
+Value Codec<MicrostructureUse>::write(const MicrostructureUse& m) {
+  return write_modelled(m, microstructure_use_fields());
+}
+Value Codec<MicrostructureUse>::schema() {
+  return defined("microstructure");
+}
+Value microstructure_definition() {
+  return modelled_definition(Family::microstructure, &MicrostructureUse::model, microstructure_use_fields());
 }
 
 // Names and bounds of a mechanism's parameters are held against the registry where programs begin

@@ -184,6 +184,25 @@ void add_reliefs(List& all) {
   all.push_back(part("ground_noises: parts", "Sparse convolution noises.", ground_noise_part_fields()));
 }
 
+void add_prints(List& all) {
+  all.push_back(
+      keyed("prints",
+            "A printer that cures layers by light, and what dlp-slice sends to it. Frame: x along the rows of "
+            "the projector's pixels, y along its columns, z away from the platform, the origin at the "
+            "picture's centre.",
+            print_fields()));
+  all.push_back(part("prints: growth", "Height h of a voxel by its grey value I: alpha_m + beta_m log(I - gamma).",
+                     print_growth_fields()));
+  all.push_back(part("prints: bleed", "How light spreads about a pixel.", print_bleed_fields()));
+  all.push_back(part("prints: parts", "Meshes on the platform.", printed_part_fields()));
+  all.push_back(part("prints: microstructures",
+                     "Patterns of surfaces, as a share of the topmost layer: a model, its parameters under their own "
+                     "names, and:",
+                     microstructure_use_fields()));
+  all.back().definition = microstructure_definition();
+  all.back().text += models_text(Family::microstructure, "### ");
+}
+
 void add_volumes(List& all) {
   all.push_back(keyed("volumes",
                       "Samples on a grid, as tomographs give them, and the surface that ct-mesh-clean made of them. "
@@ -309,6 +328,7 @@ List all_described() {
   add_results(all);
   add_goniometry(all);
   add_reliefs(all);
+  add_prints(all);
   add_volumes(all);
   add_acquisition(all);
   add_tracks(all);

@@ -115,6 +115,11 @@ GONIO_TABLE(LawUse, law_use_fields);
 GONIO_TABLE(Surface, surface_fields);
 GONIO_TABLE(Light, light_fields);
 GONIO_TABLE(MechanismUse, mechanism_use_fields);
+GONIO_TABLE(PrintGrowth, print_growth_fields);
+GONIO_TABLE(PrintBleed, print_bleed_fields);
+GONIO_TABLE(MicrostructureUse, microstructure_use_fields);
+GONIO_TABLE(PrintedPart, printed_part_fields);
+GONIO_TABLE(Print, print_fields);
 GONIO_TABLE(ProvenanceStep, provenance_step_fields);
 GONIO_TABLE(ProvenanceRun, provenance_run_fields);
 GONIO_TABLE(Provenance, provenance_fields);
@@ -125,6 +130,7 @@ Value axes_definition();  // one number, or three
 Value surface_definition();
 Value light_definition();
 Value law_definition();
+Value microstructure_definition();
 Value mechanism_use_definition();
 
 // Of what sections share (shared_tables.cpp); their codecs are declared in codec.h.

@@ -6,6 +6,7 @@
 
 #include "light/light.h"
 #include "manifest/model.h"
+#include "relief/microstructure.h"
 #include "surface/law.h"
 #include "surface/surface.h"
 
@@ -25,10 +26,12 @@ std::vector<const ModelInfo*> infos_of(const Models& all) {
 std::span<const ModelInfo* const> models(Family family) {
   static const auto surfaces = infos_of(surface::all_models());
   static const auto lights = infos_of(light::all_models());
+  static const auto microstructures = infos_of(relief::all_microstructures());
   static const auto laws = infos_of(surface::all_laws());
   switch (family) {
     case Family::surface: return surfaces;
     case Family::light: return lights;
+    case Family::microstructure: return microstructures;
     case Family::law: break;
   }
   return laws;

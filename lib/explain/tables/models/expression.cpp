@@ -1,6 +1,6 @@
 // Model "expression": the user's own forward model, tables/T/expression over columns and tables/T/parameters
-// (explain/tables/expression.h).
-#include "explain/tables/expression.h"
+// (base/expression.h).
+#include "base/expression.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,10 +13,10 @@
 #pragma once
 #include "geom/vector.h"
 
-namespace gonio::print {
+namespace gonio::relief {
 
 double published_noise(Vec3 cells);
 // As a grey value: A / 2 noise + 1/2, between 0 and 1. A: amplitude; `cells`: the place times B, the frequency.
 double published_noise_grey(Vec3 cells, double amplitude);
 
-}  // namespace gonio::print
+}  // namespace gonio::relief

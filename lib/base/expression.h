@@ -1,5 +1,5 @@
-// A forward model that the user writes: an expression over the columns of a table and named parameters, evaluated by
-// muParser. Constant pi; functions sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp ln log10
+// What the user writes as a formula: a forward model over the columns of a table and named parameters, a pattern over
+// places. Evaluated by muParser. Constant pi; functions sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp ln log10
 // log2 sqrt abs sign rint min max sum avg (and log, which is ln); operators + - * / ^, comparisons, && ||, and
 // condition ? a : b. Columns are in SI and are named with or without their unit: theta for theta_rad.
 #pragma once
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace gonio::explain::tables {
+namespace gonio {
 
 class Expression {
  public:
@@ -33,4 +33,4 @@ class Expression {
   mutable std::vector<std::unique_ptr<Engine>> idle_;
 };
 
-}  // namespace gonio::explain::tables
+}  // namespace gonio

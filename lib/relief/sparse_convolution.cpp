@@ -1,11 +1,11 @@
 // See sparse_convolution.h.
-#include "print/sparse_convolution.h"
+#include "relief/sparse_convolution.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-namespace gonio::print {
+namespace gonio::relief {
 namespace {
 
 constexpr std::int64_t impulses = 30;
@@ -52,4 +52,4 @@ double published_noise_grey(Vec3 cells, double amplitude) {
   return std::clamp(amplitude / 2 * published_noise(cells) + 0.5, 0.0, 1.0);
 }
 
-}  // namespace gonio::print
+}  // namespace gonio::relief

@@ -1,4 +1,4 @@
-#include "print/sparse_convolution.h"
+#include "relief/sparse_convolution.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 
-namespace gonio::print {
+namespace gonio::relief {
 namespace {
 
 // Reckoned by hand for one impulse: the cell at the origin, its first impulse, seed 4.
@@ -69,4 +69,4 @@ TEST(PublishedNoise, IsSmoothAndBalanced) {
 }
 
 }  // namespace
-}  // namespace gonio::print
+}  // namespace gonio::relief

@@ -1,5 +1,5 @@
 // See expression.h. muParser stays within this file.
-#include "explain/tables/expression.h"
+#include "base/expression.h"
 
 #include <muParser.h>
 
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace gonio::explain::tables {
+namespace gonio {
 namespace {
 
 // "=" alone would assign; ==, <=, >=, != compare.
@@ -95,4 +95,4 @@ void Expression::evaluate(std::span<const double* const> columns, std::span<cons
   idle_.push_back(std::move(engine));
 }
 
-}  // namespace gonio::explain::tables
+}  // namespace gonio
