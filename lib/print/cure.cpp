@@ -18,7 +18,7 @@ Cure::Cure(const Printer& printer, const PixelBox& box, int samples)
                       grid.corner_m.y + box.y_begin * grid.pixel_m.y + surface_.step_m.y / 2};
   const auto points = static_cast<std::size_t>(surface_.width) * static_cast<std::size_t>(surface_.height);
   surface_.top_m.assign(points, std::numeric_limits<float>::quiet_NaN());
-  surface_.underside_m = surface_.top_m;
+  surface_.underside_m = surface_.floor_m = surface_.ceiling_m = surface_.top_m;
   total_.assign(points, 0);
   const bool spreads = !printer.bleed.none();
   for (int j = 0; j < (spreads ? samples_ : 1); ++j)
@@ -34,7 +34,10 @@ void Cure::settle(std::size_t point, double own, double bottom_m, double top_m, 
   if (!(height_m > 0)) return;
   float &top = surface_.top_m[point], &under = surface_.underside_m[point];
   const bool hangs = std::isfinite(top) && own <= printer_.growth.threshold();
-  if (!hangs && !(static_cast<double>(top) >= bottom_m + height_m)) top = static_cast<float>(bottom_m + height_m);
+  if (!hangs && !(static_cast<double>(top) >= bottom_m + height_m)) {
+    top = static_cast<float>(bottom_m + height_m);
+    surface_.floor_m[point] = static_cast<float>(bottom_m), surface_.ceiling_m[point] = static_cast<float>(top_m);
+  }
   under = static_cast<float>(hangs ? top_m - height_m : bottom_m);
 }
 

@@ -21,8 +21,9 @@ namespace gonio::print {
 struct CuredSurface {
   int width = 0, height = 0;  // points
   Vec2 step_m{}, first_m{};   // between points; the place of the first
-  // Row by row; where nothing is solid, no number.
-  std::vector<float> top_m, underside_m;
+  // Row by row; where nothing is solid, no number. Of the highest voxel: its top, where it begins and ends.
+  std::vector<float> top_m, floor_m, ceiling_m;
+  std::vector<float> underside_m;  // where the lowest begins
 };
 
 class Cure {

@@ -24,6 +24,13 @@ Bounds bounds_of(const SlicedBody& body) {
   return b;
 }
 
+PixelBox united(const PixelBox& a, const PixelBox& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {std::min(a.x_begin, b.x_begin), std::min(a.y_begin, b.y_begin), std::max(a.x_end, b.x_end),
+          std::max(a.y_end, b.y_end)};
+}
+
 constexpr double mm = 1e3;
 
 void check_fits(const SlicedBody& body, const Bounds& b, const PixelGrid& grid) {
@@ -153,6 +160,12 @@ Slicer::Slicer(const Printer& printer, const std::vector<SlicedBody>& bodies, in
 }
 Slicer::~Slicer() = default;
 
+PixelBox Slicer::box() const {
+  PixelBox all;
+  for (const auto& sweep : sweeps_) all = united(all, sweep->box);
+  return all;
+}
+
 void Slicer::add(const Sweep& sweep, LayerPicture& layer) const {
   const LayerCoverage& from = *sweep.layer;
   const int wide = layer.box.x_end - layer.box.x_begin;
@@ -194,11 +207,7 @@ bool Slicer::next(LayerPicture& layer) {
   for (const auto& sweep : sweeps_) {
     sweep->layer = layer.bottom_m < sweep->top_m ? &sweep->coverage.next(layer.top_m) : nullptr;
     if (sweep->layer == nullptr) continue;
-    PixelBox& b = layer.box;
-    const PixelBox& s = sweep->box;
-    b = b.empty() ? s
-                  : PixelBox{std::min(b.x_begin, s.x_begin), std::min(b.y_begin, s.y_begin), std::max(b.x_end, s.x_end),
-                             std::max(b.y_end, s.y_end)};
+    layer.box = united(layer.box, sweep->box);
   }
   layer.share.assign(static_cast<std::size_t>(layer.box.x_end - layer.box.x_begin) *
                          static_cast<std::size_t>(layer.box.y_end - layer.box.y_begin),

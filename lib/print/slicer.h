@@ -61,6 +61,7 @@ class Slicer {
   Slicer(const Printer& printer, const std::vector<SlicedBody>& bodies, int samples = 4);
   ~Slicer();
   std::size_t layers() const { return layers_; }  // up to the highest top
+  PixelBox box() const;                           // of all bodies, within the picture
   // The next layer; false after the last. The same bytes for any number of threads.
   bool next(LayerPicture& layer);
 
