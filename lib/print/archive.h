@@ -64,10 +64,10 @@ class ArchiveWriter {
   Job& job() { return job_; }  // all but the pixels may still change until finish()
 
  protected:
-  explicit ArchiveWriter(const struct ArchiveFormat& format, Job job, std::string place);
+  ArchiveWriter(const struct ArchiveFormat& format, Job job, std::string place);
   // Checks and counts; the layer's number.
   std::size_t count_layer(double bottom_m, double top_m);
-  void check_any_layer() const;
+  void close_layers();  // Error(data) where there was none
 
   const struct ArchiveFormat& format_;
   Job job_;  // with tops_m of what was added
