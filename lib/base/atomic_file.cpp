@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/growing_file.h"
 #include "base/temporaries.h"
 
 namespace gonio {

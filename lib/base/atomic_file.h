@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -17,26 +16,6 @@ void write_file(const std::filesystem::path& path, std::string_view bytes);
 // keeps the target's extension. Whatever `write` throws passes through after the temporary is removed.
 void write_file_through(const std::filesystem::path& path,
                         const std::function<void(const std::filesystem::path& temporary)>& write);
-
-// The same piece by piece, for what is too large to be held: what was appended takes the target's place with commit()
-// and vanishes without. Errors as write_file().
-class GrowingFile {
- public:
-  explicit GrowingFile(const std::filesystem::path& path);
-  ~GrowingFile();
-  GrowingFile(const GrowingFile&) = delete;
-  GrowingFile& operator=(const GrowingFile&) = delete;
-  void append(std::string_view bytes);
-  void overwrite(std::uint64_t at, std::string_view bytes);  // of what was appended
-  std::uint64_t size() const { return size_; }
-  void commit();
-
- private:
-  struct Temporary;
-  std::filesystem::path path_, target_;
-  std::unique_ptr<Temporary> temporary_;
-  std::uint64_t size_ = 0;
-};
 
 // Whole file, at most `limit` bytes. Error(no_input) where it is missing, Error(data) above the limit.
 std::string read_file(const std::filesystem::path& path, std::uint64_t limit = std::uint64_t{1} << 32);

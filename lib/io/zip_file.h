@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/atomic_file.h"
+#include "base/growing_file.h"
 
 namespace gonio::io {
 
