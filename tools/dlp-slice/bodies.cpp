@@ -70,7 +70,8 @@ double closed_volume(const io::TriangleMesh& mesh, const std::string& place) {
                        topology.boundary_edges, topology.disagreeing_edges),
                 "close it: ct-mesh-clean or an editor");
   if (!(topology.volume_m3 > 0))
-    throw Error(Exit::data, place, format("encloses %.3g mm^3: its faces look inwards", topology.volume_m3 * 1e9), "turn them round");
+    throw Error(Exit::data, place, format("encloses %.3g mm^3: its faces look inwards", topology.volume_m3 * 1e9),
+                "turn them round");
   return topology.volume_m3;
 }
 
@@ -103,7 +104,8 @@ std::vector<Placing> placings(const cli::Invocation& call, const std::vector<Ext
   const std::size_t n = extents.size();
   const std::vector<std::string>& at = call.texts("at");
   if (!at.empty() && at.size() != n)
-    throw Error(Exit::usage, "--at", "is given " + std::to_string(at.size()) + " times for " + std::to_string(n) + " meshes",
+    throw Error(Exit::usage, "--at",
+                "is given " + std::to_string(at.size()) + " times for " + std::to_string(n) + " meshes",
                 "give it once for each, or not at all");
   std::vector<Placing> all(n);
   double wide = 0;
@@ -127,7 +129,8 @@ std::vector<double> turns(const cli::Invocation& call, std::size_t n) {
   std::vector<double> all;
   for (const std::string& text : call.texts("turn")) all.push_back(parse_quantity(text, Dimension::angle, "--turn"));
   if (!all.empty() && all.size() != n)
-    throw Error(Exit::usage, "--turn", "is given " + std::to_string(all.size()) + " times for " + std::to_string(n) + " meshes",
+    throw Error(Exit::usage, "--turn",
+                "is given " + std::to_string(all.size()) + " times for " + std::to_string(n) + " meshes",
                 "give it once for each, or not at all");
   all.resize(n, 0);
   return all;
@@ -137,7 +140,7 @@ void add_areas(const print::SlicedBody& body, manifest::PrintedPart& part) {
   double facing = 0, hidden = 0;
   for (const auto& [a, b, c] : body.triangles) {
     const Vec3 twice = cross(body.positions_m[b] - body.positions_m[a], body.positions_m[c] - body.positions_m[a]);
-    (twice.z > 0 ? facing : twice.z < 0 ? hidden : facing) += twice.z == 0 ? 0 : length(twice) / 2;
+    (twice.z > 0 ? facing : twice.z < 0 ? hidden : facing) += twice.z == 0 ? 0 : norm(twice) / 2;
   }
   part.facing_m2 = facing, part.hidden_m2 = hidden;
 }
@@ -145,8 +148,10 @@ void add_areas(const print::SlicedBody& body, manifest::PrintedPart& part) {
 void enter(Work& work, const std::string& name, const io::TriangleMesh& mesh) {
   const std::filesystem::path path = work.call.output_path(name + ".ply");
   io::write_ply(path, mesh, {.properties = {}, .labels = !mesh.labels.empty()});
-  work.call.document.meshes[name] = manifest::Mesh{
-      .file = manifest::add_file(work.call.document, path, name), .sphere_radius_m = {}, .plane_size_m = {}, .normals = "smooth"};
+  work.call.document.meshes[name] = manifest::Mesh{.file = manifest::add_file(work.call.document, path, name),
+                                                   .sphere_radius_m = {},
+                                                   .plane_size_m = {},
+                                                   .normals = "smooth"};
 }
 
 std::string free_name(const std::vector<manifest::PrintedPart>& parts, const std::string& stem) {
@@ -180,17 +185,21 @@ std::vector<AskedStructure> structures_asked(Work& work) {
   std::vector<AskedStructure> all;
   for (const std::string& text : work.call.texts("structure")) {
     AskedStructure asked;
-    asked.use = relief::parse_microstructure(text, "--structure", [&](const std::string& name, const std::string& value) {
-      if (name == "on") asked.part = value;
-      if (name == "label") asked.label = static_cast<std::int32_t>(std::lround(parse_quantity(value, Dimension::none, "--structure")));
-      return name == "on" || name == "label";
-    });
+    asked.use =
+        relief::parse_microstructure(text, "--structure", [&](const std::string& name, const std::string& value) {
+          if (name == "on") asked.part = value;
+          if (name == "label")
+            asked.label = static_cast<std::int32_t>(std::lround(parse_quantity(value, Dimension::none, "--structure")));
+          return name == "on" || name == "label";
+        });
     if (!asked.use.file.empty() && !work.call.document.files.contains(asked.use.file)) {
       const std::string path = asked.use.file;
       if (!std::filesystem::exists(path))
-        throw Error(Exit::no_input, path, "is neither a file of the manifest nor one that is there", "name a picture: file=FILE");
+        throw Error(Exit::no_input, path, "is neither a file of the manifest nor one that is there",
+                    "name a picture: file=FILE");
       work.call.note_input(path);
-      asked.use.file = manifest::add_file(work.call.document, path, file_stem(std::filesystem::path(path).stem().string()));
+      asked.use.file =
+          manifest::add_file(work.call.document, path, file_stem(std::filesystem::path(path).stem().string()));
     }
     auto& structures = work.entry().microstructures;
     asked.name = asked.use.model;
@@ -220,7 +229,8 @@ void add_structures(Work& work) {
         body.structure = share, parts[i].microstructure = asked.name;
     }
     if (!used)
-      throw Error(Exit::usage, "--structure", asked.name + " applies to no mesh" + (asked.label ? " with that label" : ""),
+      throw Error(Exit::usage, "--structure",
+                  asked.name + " applies to no mesh" + (asked.label ? " with that label" : ""),
                   "on= takes a mesh's name, label= a label of its faces");
   }
   for (print::SlicedBody& body : work.bodies) {
@@ -259,7 +269,8 @@ void open_bodies(Work& work) {
     for (Vec3& p : meshes[i].positions_m) p = p + move;
     parts[i].at_m = {move.x, move.y, move.z};
     print::SlicedBody body;
-    body.name = files[i], body.positions_m = std::move(meshes[i].positions_m), body.triangles = std::move(meshes[i].triangles);
+    body.name = files[i], body.positions_m = std::move(meshes[i].positions_m),
+    body.triangles = std::move(meshes[i].triangles);
     body.texture = std::move(meshes[i].texture), body.labels = std::move(meshes[i].labels);
     print::snap_to_layers(body, work.printer, 0);
     add_areas(body, parts[i]);
@@ -287,7 +298,8 @@ std::vector<print::JobPreview> previews_of(const Work& work) {
   for (const auto& [wide, high] : {std::pair{400, 400}, std::pair{800, 480}}) {
     const io::Image image = io::decode_raster(report::still_png(view, 0, wide, high), "preview");
     print::JobPreview preview{.width_px = image.width, .height_px = image.height, .rgb = {}};
-    for (const float v : image.data) preview.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0f, 1.0f))));
+    for (const float v : image.data)
+      preview.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0f, 1.0f))));
     previews.push_back(std::move(preview));
   }
   return previews;

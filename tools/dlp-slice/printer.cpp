@@ -11,8 +11,8 @@ namespace gonio::tools::dlp_slice {
 namespace {
 
 // Of prints/NAME/process.
-constexpr std::array known{"exposure_s",     "bottom_exposure_s", "bottom_layers", "lift_m",
-                           "lift_m_per_s",   "retract_m_per_s",   "wait_s",        "resin_kg_per_m3"};
+constexpr std::array known{"exposure_s",   "bottom_exposure_s", "bottom_layers", "lift_m",
+                           "lift_m_per_s", "retract_m_per_s",   "wait_s",        "resin_kg_per_m3"};
 
 double process(const Work& work, const char* name, double otherwise) {
   const auto& all = work.call.document.prints.at(work.printer.name).process;
@@ -23,14 +23,16 @@ double process(const Work& work, const char* name, double otherwise) {
 std::string chosen(const cli::Invocation& call, const manifest::Document& from) {
   if (call.given("print")) {
     if (!from.prints.contains(call.text("print")))
-      throw Error(Exit::data, manifest::place(from, "/prints"), "has no \"" + call.text("print") + "\"", "name one of prints");
+      throw Error(Exit::data, manifest::place(from, "/prints"), "has no \"" + call.text("print") + "\"",
+                  "name one of prints");
     return call.text("print");
   }
   if (from.prints.size() != 1)
-    throw Error(Exit::data, manifest::place(from, "/prints"),
-                from.prints.empty() ? "describes no printer" : "describes " + std::to_string(from.prints.size()) + " printers",
-                from.prints.empty() ? "give pixel_m, width_px, height_px and layer_m under a name: --printer FILE"
-                                    : "choose one: --print NAME");
+    throw Error(
+        Exit::data, manifest::place(from, "/prints"),
+        from.prints.empty() ? "describes no printer" : "describes " + std::to_string(from.prints.size()) + " printers",
+        from.prints.empty() ? "give pixel_m, width_px, height_px and layer_m under a name: --printer FILE"
+                            : "choose one: --print NAME");
   return from.prints.begin()->first;
 }
 

@@ -13,6 +13,7 @@
 #include "print/archive.h"
 #include "print/calibration_sample.h"
 #include "print/compensation.h"
+#include "print/design.h"
 #include "print/prediction.h"
 #include "print/slicer.h"
 #include "tools/dlp-slice/options.h"
@@ -40,26 +41,28 @@ struct Work {
   Totals totals;
   std::vector<Section> sections;
   std::optional<print::CuredSurface> predicted;
+  std::optional<print::GrowthFit> growth;
+  std::optional<print::Design> design;
   std::vector<std::string> notes;  // for the page
   manifest::Print& entry() { return call.document.prints.at(printer.name); }
 };
 
-void open_printer(Work& work);    // printer.cpp: --printer, --print, --layer, --layers
-print::Job job_of(Work& work);    // what the process says of the job
+void open_printer(Work& work);  // printer.cpp: --printer, --print, --layer, --layers
+print::Job job_of(Work& work);  // what the process says of the job
 double time_of(const Work& work, std::size_t layers);
 
-void open_bodies(Work& work);     // bodies.cpp: meshes, their places and structures
+void open_bodies(Work& work);  // bodies.cpp: meshes, their places and structures
 std::vector<print::JobPreview> previews_of(const Work& work);
 
 // send.cpp: layers into the archive.
 void send_bodies(Work& work);
 void send_sample(Work& work);
 
-void predict(Work& work);         // predict.cpp: from the archive
-io::HeightMap predicted_map(Work& work, const print::CuredSurface& surface);
+void predict(Work& work);  // predict.cpp: from the archive
+std::optional<print::GroundAt> ground_asked(Work& work);
 
-void fit_growth(Work& work);      // growth.cpp
-bool fulfil_wish(Work& work);     // wish.cpp; false: beyond reach, and the nearest was taken
+void fit_growth(Work& work);   // growth.cpp
+bool fulfil_wish(Work& work);  // wish.cpp; false: beyond reach, and the nearest was taken
 
 std::string page(const Work& work);  // page.cpp
 
