@@ -124,7 +124,7 @@ std::vector<float> sample_layer(const CalibrationSample& sample, const Printer& 
     paint(w.box, [&](int x, int) {  // the mean height of the ramp within the pixel
       const double rise_m = (x + 0.5) * printer.pixel_m.x * std::tan(w.slope_rad), layer_m = printer.thickness_m(layer);
       const double share = std::clamp(rise_m / layer_m - static_cast<double>(above), 0.0, 1.0);
-      return printer.growth.grey(share * layer_m, layer_m);
+      return printer.growth.grey_of_share(share, layer_m);
     });
   return greys;
 }

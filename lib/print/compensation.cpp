@@ -81,10 +81,10 @@ bool Compensation::draw() {
           static_cast<std::size_t>(y - from.box.y_begin) * static_cast<std::size_t>(from.box.x_end - from.box.x_begin) +
           static_cast<std::size_t>(x - from.box.x_begin);
       const double share = static_cast<double>(from.share[at]);
-      if (!(share > 0)) continue;
+      const double grey = printer_.growth.grey_of_share(share, t);
+      if (!(grey > 0)) continue;
       const std::size_t k = static_cast<std::size_t>(y - box_.y_begin) * static_cast<std::size_t>(wide) +
                             static_cast<std::size_t>(x - box_.x_begin);
-      const double grey = printer_.growth.grey(share * t, t);
       v.height_m[k] = static_cast<float>(share * t), v.plain[k] = static_cast<float>(std::round(255 * grey) / 255);
       v.wish[k] = share * t >= reach_m ? Wish::full : Wish::part;
       v.wanted[k] = static_cast<float>(grey), v.weight[k] = weigh(grey);

@@ -194,7 +194,7 @@ io::HeightMap printed_patch(const Printer& printer, const relief::ShareAt& struc
                       grid.corner_m.y + (y + (k / samples + 0.5) / samples) * grid.pixel_m.y};
         sum += structure({at, {at.x, at.y, (slab + 1) * layer_m}});
       }
-      const double grey = printer.growth.grey(sum / (samples * samples) * layer_m, layer_m);
+      const double grey = printer.growth.grey_of_share(sum / (samples * samples), layer_m);
       layers[slab][static_cast<std::size_t>(y * side + x)] = static_cast<float>(std::round(255 * grey) / 255);
     }
   small.layers_m.clear();

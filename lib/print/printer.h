@@ -23,7 +23,12 @@ class Growth {
   // The grey value for a height of at most `layer_m`; white where white does not reach it.
   double grey(double height_m, double layer_m) const;
   double reach_m(double layer_m) const { return height_m(1, layer_m); }  // of white
-  double threshold() const;                                              // the darkest grey that cures
+  // For a voxel that is to be solid by a share of the layer; dark below half of the 255th part, for the darkest grey
+  // that cures makes a film of any height.
+  double grey_of_share(double share, double layer_m) const {
+    return share < 0.5 / 255 ? 0 : grey(share * layer_m, layer_m);
+  }
+  double threshold() const;  // the darkest grey that cures
   bool proportional() const { return !law_; }
   const std::optional<GrowthLaw>& law() const { return law_; }
   const std::optional<GrowthTable>& table() const { return table_; }

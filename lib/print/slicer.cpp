@@ -231,7 +231,7 @@ std::vector<std::uint8_t> greys_of(const LayerPicture& layer, const Printer& pri
   parallel_for(
       0, greys.size(),
       [&](std::size_t k) {
-        const double grey = printer.growth.grey(static_cast<double>(layer.share[k]) * thickness_m, thickness_m);
+        const double grey = printer.growth.grey_of_share(static_cast<double>(layer.share[k]), thickness_m);
         greys[k] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(grey, 0.0, 1.0)));
       },
       4096);
