@@ -62,8 +62,9 @@ struct SampleReading {
   int incomplete = 0;             // repetitions of which a field lies outside of the map or has too few points
   std::array<double, 3> plane{};  // of the bare slab: height at the map's middle, slopes along x and y
 };
-// Heights of gradients' fields above the bare slab about them. The place is looked for within `search_px` pixels of
-// the printer along either axis. Error(data) at `place`.
+// Heights of gradients' fields above the bare slab about them, which counts as the bottom of their layer: a white that
+// does not fill a layer shows in both, and in neither here. The place is looked for within `search_px` pixels of the
+// printer along either axis. Error(data) at `place`.
 SampleReading read_gradients(const io::HeightMap& map, const CalibrationSample& sample, const Printer& printer,
                              const MapPlace& near, double search_px, const std::string& place);
 

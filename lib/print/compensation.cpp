@@ -136,16 +136,18 @@ Compensation::Lights Compensation::slopes(const Lights& misfit) const {
   return all;
 }
 
-Misfit Compensation::judged(const Voxels& v, const std::vector<float>& total) const {
-  Misfit sum;
+void Compensation::judge(Voxels& v, const std::vector<float>& without, const std::vector<float>& with) const {
   const double t = v.thickness_m();
-  for (std::size_t i = 0; i < total.size(); ++i) {
-    const double height_m = std::min(t, printer_.growth.height_m(static_cast<double>(total[i]), t));
-    const double off = height_m - static_cast<double>(v.height_m[i]);
-    if (v.wish[i] != Wish::part && off == 0) continue;
-    sum.sum_m2 += off * off, ++sum.voxels;
+  v.before = v.after = {};
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    const auto off = [&](float light) {
+      return std::min(t, printer_.growth.height_m(static_cast<double>(light), t)) - static_cast<double>(v.height_m[i]);
+    };
+    const double before = off(without[i]), after = off(with[i]);
+    if (v.wish[i] != Wish::part && before == 0 && after == 0) continue;
+    v.before.sum_m2 += before * before, ++v.before.voxels;
+    v.after.sum_m2 += after * after, ++v.after.voxels;
   }
-  return sum;
 }
 
 void Compensation::solve() {
@@ -159,7 +161,6 @@ void Compensation::solve() {
   }
   const std::size_t last = std::min(window_.size(), sent_ + block);
   const Lights without = total(plain);
-  for (std::size_t k = sent_; k < last; ++k) window_[k].before = judged(window_[k], without[k]);
   // The largest slope of the slopes: |K| <= 1, and what is carried down is a geometric series.
   const auto step = static_cast<float>((1 - carried) * (1 - carried) / static_cast<double>(heaviest));
   Lights y = x;
@@ -183,7 +184,7 @@ void Compensation::solve() {
     window_[k].light = x[k];
   }
   const Lights with = total(x);
-  for (std::size_t k = sent_; k < last; ++k) window_[k].after = judged(window_[k], with[k]);
+  for (std::size_t k = sent_; k < last; ++k) judge(window_[k], without[k], with[k]);
   solved_ = last - sent_;
 }
 

@@ -23,8 +23,8 @@
 
 namespace gonio::print {
 
-struct Misfit {  // of heights, over the voxels that are neither empty nor full as they ought to be, or ought to be
-                 // neither
+// Of heights, over voxels that ought to be neither empty nor full, or are not as they ought to be in either.
+struct Misfit {
   double sum_m2 = 0;
   std::size_t voxels = 0;
   double rms_m() const;
@@ -53,7 +53,7 @@ class Compensation {
   Lights total(const Lights& own) const;      // G of the window's layers
   Lights misfit(const Lights& total) const;   // w (G - G*), where it counts
   Lights slopes(const Lights& misfit) const;  // of half the sum, by the lights
-  Misfit judged(const Voxels& voxels, const std::vector<float>& total) const;
+  void judge(Voxels& voxels, const std::vector<float>& without, const std::vector<float>& with) const;
   double kept(std::size_t k) const;  // of layer k's light in the layer below it
   Printer printer_;
   PixelBox box_;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int patch_px = 160, border_px = 8, slab = 2, steps = 12, halvings = 10;
 constexpr double close_enough = 0.05, aperture_rad = 3 * pi / 180;
+constexpr double facet_alpha = 0.1;  // roughness of the resin below what a print controls
 
 struct Range {
   std::string parameter;
@@ -38,7 +39,8 @@ Range range_of(const manifest::MicrostructureUse& use, WishedFigure figure, doub
   throw Error(Exit::data, place, "\"" + use.model + "\" has no number to move", "begin with noise, sinusoid or ridges");
 }
 
-manifest::MicrostructureUse first_form(const Printer& printer, WishedFigure figure) {
+// In the order in which they are tried; of noise, finer first.
+std::vector<manifest::MicrostructureUse> forms_of(const Printer& printer, WishedFigure figure) {
   manifest::MicrostructureUse use;
   if (figure == WishedFigure::anisotropy) {
     use.model = "sinusoid";
@@ -48,9 +50,14 @@ manifest::MicrostructureUse first_form(const Printer& printer, WishedFigure figu
     use.parameters["pitch_m"] = 10 * std::max(printer.pixel_m.x, printer.pixel_m.y), use.parameters["ridge_rad"] = 0.1;
   } else {
     use.model = "noise";
-    use.parameters["frequency"] = 32.0;
+    std::vector<manifest::MicrostructureUse> noises;
+    for (const double frequency : {32.0, 16.0, 8.0, 4.0}) {
+      use.parameters["frequency"] = frequency;
+      noises.push_back(use);
+    }
+    return noises;
   }
-  return use;
+  return {use};
 }
 
 struct Seen {
@@ -72,7 +79,7 @@ Seen contrast_of(const io::HeightMap& map, const Wish& wish, std::uint64_t seed)
   };
   // Facets tilt towards v (y up): light from there. A patch that is turned sees the same light from u.
   const auto sent = [&](double azimuth) {
-    return relief::lobe(patch, relief::facets_of_index(wish.eta), along(wish.view_rad, azimuth + pi),
+    return relief::lobe(patch, relief::facets_of_index(wish.eta, facet_alpha), along(wish.view_rad, azimuth + pi),
                         along(wish.incidence_rad, azimuth), {aperture_rad, aperture_rad},
                         {.paths = 1 << 15, .seed = seed});
   };
@@ -215,7 +222,15 @@ io::HeightMap printed_patch(const Printer& printer, const relief::ShareAt& struc
 Design design(const Printer& printer, const Wish& wish, const std::optional<GroundAt>& ground,
               const std::optional<manifest::MicrostructureUse>& form, int points, std::uint64_t seed,
               const std::string& place) {
-  return Search(printer, wish, ground, form ? *form : first_form(printer, wish.figure), points, seed, place).found();
+  std::optional<Design> best;
+  for (const manifest::MicrostructureUse& use :
+       form ? std::vector<manifest::MicrostructureUse>{*form} : forms_of(printer, wish.figure)) {
+    Design found = Search(printer, wish, ground, use, points, seed, place).found();
+    const auto off = [&](const Design& d) { return std::abs(d.reached - wish.value); };
+    if (!best || off(found) < off(*best)) best = std::move(found);
+    if (best->met) break;
+  }
+  return *best;
 }
 
 }  // namespace gonio::print

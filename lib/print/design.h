@@ -47,7 +47,8 @@ struct Design {
   std::vector<DesignStep> tried;
   io::HeightMap map;  // of the patch
 };
-// `form`: the structure to move; nothing: noise for heights and slopes, a sinusoid for anisotropy, ridges for contrast.
+// `form`: the structure to move; nothing: noise for heights and slopes (the finest that reaches the figure), a sinusoid
+// for anisotropy, ridges for contrast.
 // Error(data) at `place` for a form that has no number to move.
 Design design(const Printer& printer, const Wish& wish, const std::optional<GroundAt>& ground,
               const std::optional<manifest::MicrostructureUse>& form, int points, std::uint64_t seed,
