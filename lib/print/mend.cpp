@@ -133,7 +133,6 @@ class Mending {
     std::vector<double> area(surfaces_.pieces, 0), closing(surfaces_.pieces, 0);
     for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
       area[surfaces_.piece[f]] += area_of(mesh_, mesh_.triangles[f]);
-    const std::size_t first_new = mesh_.triangles.size();
     double largest = 0;
     std::vector<std::array<std::uint32_t, 3>> fills;
     for (const mesh::HoleRim& rim : rims) {
@@ -147,9 +146,8 @@ class Mending {
       if (closing[rim.piece] > most_closing * area[rim.piece]) refuse_open(rims, rim);
     }
     mesh_.triangles.insert(mesh_.triangles.end(), fills.begin(), fills.end());
-    for (const auto& pair : mesh::self_intersections(mesh_))
-      if (pair.second >= first_new)
-        refuse("has a hole that cannot be closed without meeting the surface beside it", "close it where it was made");
+    // At an edge with a corner in its middle that one side alone knows the hole is a triangle without area.
+    if (mesh::turn_needles(mesh_) > 0) surfaces_ = mesh::make_surfaces(mesh_);
     steps_.push_back(counted(rims.size(), "hole was closed", "holes were closed") + ", the largest " +
                      format("%.3g", largest) + " m across, with " + counted(fills.size(), "triangle", "triangles"));
   }
@@ -239,6 +237,7 @@ class Mending {
 
   Mended result() {
     Mended mended;
+    mesh::make_surfaces(mesh_);  // what touches is one vertex after the union
     for (const Piece& p : pieces_of(mesh_)) {
       ++(p.volume_m3 > 0 ? mended.bodies : mended.cavities);
       mended.volume_m3 += p.volume_m3;

@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/union_find.h"
 #include "mesh/adjacency.h"
 #include "mesh/mend/edges.h"
 #include "mesh/topology.h"
@@ -31,6 +32,76 @@ std::size_t needle_edge(const io::TriangleMesh& mesh, const Corners& t) {
   const double area = norm(cross(mesh.positions_m[t[1]] - a, mesh.positions_m[t[2]] - a));
   return area <= line_share * length[longest] * length[longest] ? longest : 3;
 }
+
+struct Copies {
+  std::vector<std::uint32_t> faces;
+  int forward = 0, backward = 0;
+  bool sheet() const { return forward == backward; }  // on its own reverse
+};
+
+// The same corners from the lowest on; whether they are passed in ascending order.
+std::pair<Corners, bool> in_order(Corners t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  const bool forward = t[1] < t[2];
+  if (!forward) std::swap(t[1], t[2]);
+  return {t, forward};
+}
+
+// Sheets that hang together over edges where nothing else is. One on which others stand, or that is alone, has no part
+// in what others enclose; all other triangles on their own reverse stand in for a triangle of a surface.
+std::vector<bool> sheets_in_vain(const std::vector<std::pair<Corners, Copies>>& groups) {
+  std::vector<Corners> different;
+  for (const auto& group : groups) different.push_back(group.first);
+  const auto is_sheet = [&](const MeshEdge& e) { return groups[e.face].second.sheet(); };
+  const std::vector<MeshEdge> edges = edges_of(different);
+  UnionFind sheets(groups.size());
+  for_each_edge(edges, [&](std::span<const MeshEdge> edge) {
+    if (edge.size() == 2 && is_sheet(edge[0]) && is_sheet(edge[1])) sheets.join(edge[0].face, edge[1].face);
+  });
+  std::vector<bool> crowded(groups.size(), false), alone(groups.size(), true), in_vain(groups.size(), false);
+  for_each_edge(edges, [&](std::span<const MeshEdge> edge) {
+    for (const MeshEdge& e : edge) {
+      if (edge.size() > 2) crowded[sheets.group(e.face)] = true;
+      if (edge.size() == 2 && is_sheet(edge[0]) != is_sheet(edge[1])) alone[sheets.group(e.face)] = false;
+    }
+  });
+  for (std::uint32_t g = 0; g < groups.size(); ++g) {
+    const std::uint32_t sheet = sheets.group(g);
+    in_vain[g] = groups[g].second.sheet() && (crowded[sheet] || alone[sheet]);
+  }
+  return in_vain;
+}
+
+void drop_copies(io::TriangleMesh& mesh, CleanedFaces& report) {
+  std::map<Corners, Copies> found;
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    const auto [t, forward] = in_order(mesh.triangles[f]);
+    Copies& copies = found[t];
+    copies.faces.push_back(f);
+    ++(forward ? copies.forward : copies.backward);
+  }
+  if (found.size() == mesh.triangles.size()) return;
+  const std::vector<std::pair<Corners, Copies>> groups(found.begin(), found.end());
+  const std::vector<bool> in_vain = sheets_in_vain(groups);
+  std::vector<char> gone(mesh.triangles.size(), 0);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const Copies& copies = groups[g].second;
+    const bool wanted_forward = copies.forward >= copies.backward;
+    bool kept = false;
+    for (const std::uint32_t f : copies.faces) {
+      const bool keep = !in_vain[g] && !kept && in_order(mesh.triangles[f]).second == wanted_forward;
+      kept = kept || keep;
+      gone[f] = keep ? 0 : 1;
+    }
+    (in_vain[g] ? report.cancelled : report.doubled) += copies.faces.size() - (in_vain[g] ? 0 : 1);
+  }
+  std::size_t left = 0;
+  for (std::size_t f = 0; f < gone.size(); ++f)
+    if (gone[f] == 0) mesh.triangles[left++] = mesh.triangles[f];
+  mesh.triangles.resize(left);
+}
+
+}  // namespace
 
 // A needle abc, with c on the edge ab, goes, and its neighbour bad over that edge becomes bcd and cad. Rounds, because
 // needles stand beside needles. What has no single neighbour stays: it has no area and harms nothing.
@@ -67,54 +138,6 @@ std::size_t turn_needles(io::TriangleMesh& mesh) {
   }
   return turned;
 }
-
-struct Copies {
-  std::vector<std::uint32_t> faces;
-  int forward = 0, backward = 0;
-};
-
-void drop_copies(io::TriangleMesh& mesh, CleanedFaces& report) {
-  std::map<Corners, Copies> groups;
-  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-    Corners t = mesh.triangles[f];
-    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    const bool forward = t[1] < t[2];
-    if (!forward) std::swap(t[1], t[2]);
-    Copies& copies = groups[t];
-    copies.faces.push_back(f);
-    ++(forward ? copies.forward : copies.backward);
-  }
-  if (groups.size() == mesh.triangles.size()) return;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> beside;  // different triangles at an edge
-  const auto edge = [](const Corners& t, std::size_t c) { return std::minmax(t[c], t[(c + 1) % 3]); };
-  for (const auto& [t, copies] : groups)
-    for (std::size_t c = 0; c < 3; ++c) ++beside[edge(t, c)];
-  std::vector<char> gone(mesh.triangles.size(), 0);
-  for (const auto& [t, copies] : groups) {
-    if (copies.faces.size() == 1) continue;
-    bool needed = copies.forward != copies.backward;
-    if (!needed) {
-      needed = true;
-      for (std::size_t c = 0; c < 3; ++c) needed = needed && beside[edge(t, c)] == 2;
-    }
-    const bool wanted_forward = copies.forward >= copies.backward;
-    bool kept = false;
-    for (const std::uint32_t f : copies.faces) {
-      Corners own = mesh.triangles[f];
-      std::rotate(own.begin(), std::min_element(own.begin(), own.end()), own.end());
-      const bool keep = needed && !kept && (own[1] < own[2]) == wanted_forward;
-      kept = kept || keep;
-      gone[f] = keep ? 0 : 1;
-    }
-    (needed ? report.doubled : report.cancelled) += copies.faces.size() - (needed ? 1 : 0);
-  }
-  std::size_t left = 0;
-  for (std::size_t f = 0; f < gone.size(); ++f)
-    if (gone[f] == 0) mesh.triangles[left++] = mesh.triangles[f];
-  mesh.triangles.resize(left);
-}
-
-}  // namespace
 
 CleanedFaces clean_faces(io::TriangleMesh& mesh) {
   CleanedFaces report;

@@ -16,6 +16,9 @@ struct CleanedFaces {
 // Positions and triangles alone are kept.
 CleanedFaces clean_faces(io::TriangleMesh& mesh);
 
+// The needles of that alone.
+std::size_t turn_needles(io::TriangleMesh& mesh);
+
 // Vertices at the rims of holes that lie within `reach_m` of each other, and not along one edge, become one: a rim that
 // was torn. Returns how many went.
 std::size_t stitch_rims(io::TriangleMesh& mesh, double reach_m);

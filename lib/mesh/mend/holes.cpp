@@ -26,7 +26,7 @@ Vec3 doubled_normal(const io::TriangleMesh& mesh, std::uint32_t a, std::uint32_t
 }
 double cosine(Vec3 a, Vec3 b) {
   const double length = norm(a) * norm(b);
-  return length > 0 ? dot(a, b) / length : 1;  // a triangle without area folds nothing
+  return length > 0 ? dot(a, b) / length : -1;  // a triangle without area is the last choice
 }
 
 class Closing {
