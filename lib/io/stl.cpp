@@ -1,8 +1,10 @@
 // See stl.h. Binary: 80 bytes of anything, a count of triangles (32 bit, little endian), and 50 bytes a triangle
 // (normal and three corners in single precision, 16 bits of anything). Ascii: facet normal, outer loop, three vertex
-// lines, endloop, endfacet between solid and endsolid.
+// lines, endloop, endfacet between solid and endsolid; words behind endloop and endfacet are
+// remarks.
 #include "io/stl.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -67,6 +69,17 @@ class StlWords {
     if (const std::string_view found = next(); found != word)
       corners_.refuse("has \"" + std::string(found.substr(0, 20)) + "\" where \"" + std::string(word) + "\" belongs");
   }
+  // What stands between a keyword and the end of its line goes, unless it is what may follow.
+  void skip_remark(std::initializer_list<std::string_view> may_follow) {
+    const std::string_view here = rest_;
+    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    if (rest_.substr(0, end).find_first_not_of(blank) == std::string_view::npos) return;
+    const std::string_view word = next();
+    if (std::find(may_follow.begin(), may_follow.end(), word) == may_follow.end())
+      rest_ = here.substr(end);
+    else
+      rest_ = here;
+  }
   double number() {
     std::string_view word = next();
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -98,7 +111,9 @@ void read_facets(StlWords& words, StlCorners& corners) {
       corners.add({x, y, z});
     }
     words.expect("endloop");
+    words.skip_remark({"endfacet"});
     words.expect("endfacet");
+    words.skip_remark({"facet", "endsolid"});
   }
 }
 

@@ -37,7 +37,7 @@ inline print::Job full_job(int width, int height) {
   job.exposure_s = 2.5, job.bottom_exposure_s = 20, job.bottom_layers = 4;
   job.lift_m = 6e-3, job.lift_m_per_s = 1e-3, job.retract_m_per_s = 2.5e-3;
   job.name = "ridges", job.printer = "bench", job.resin = "grey, slow";
-  job.resin_kg_per_m3 = 1120, job.resin_m3 = 3.25e-6, job.printing_s = 1234.5;
+  job.resin_kg_per_m3 = 1120, job.resin_m3 = 3.25e-6, job.printing_s = 1234;
   for (const int side : {12, 20}) {
     print::JobPreview preview{.width_px = side, .height_px = side / 2};
     for (int i = 0; i < 3 * side * (side / 2); ++i) preview.rgb.push_back(static_cast<std::uint8_t>(i * 7));

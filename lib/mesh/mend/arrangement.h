@@ -1,0 +1,21 @@
+// Triangles cut along where they meet others, in exact numbers.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "io/ply.h"
+#include "mesh/adjacency.h"
+
+namespace gonio::mesh {
+
+struct Arrangement {
+  std::vector<Vec3> positions_m{};      // no two of them at one exact place
+  std::vector<Corners> triangles{};     // that meet in whole edges and corners alone, or lie on each other
+  std::vector<std::uint32_t> parent{};  // of each: the triangle that it is or was cut from
+  // Of each: triangles before that lie in its plane and cover it, its parent among them, ascending; empty: it alone.
+  std::vector<std::vector<std::uint32_t>> covering{};
+  std::size_t crossings = 0, cut = 0;  // pairs that met; triangles that were cut
+};
+Arrangement arrange(const io::TriangleMesh& mesh);
+
+}  // namespace gonio::mesh
