@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "base/parallel.h"
+#include "base/random.h"
 
 namespace gonio::print {
 namespace {
@@ -76,6 +78,34 @@ Integral integral(const Polygon& p, double from_m) {
   return sum;
 }
 
+// The same by rays through pixel (x, y), of a polygon that lies within it and in the plane
+// z = plane[0] + plane[1] x + plane[2] y. Neighbours ask the same of their common edge, so that a ray meets one of
+// them.
+Integral by_rays(const Polygon& p, const std::array<double, 3>& plane, double from_m, int x, int y, const Rays& rays) {
+  double twice = 0;
+  const Corner& o = p.corners[0];
+  for (std::size_t i = 1; i + 1 < p.size; ++i) {
+    const Corner &a = p.corners[i], &b = p.corners[i + 1];
+    twice += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+  }
+  const double sign = twice > 0 ? 1 : -1, one = 1.0 / (rays.side * rays.side);
+  Random random(rays.seed, static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint32_t>(x));
+  Integral sum;
+  for (int k = 0; k < rays.side * rays.side; ++k) {
+    const double u = x + (k % rays.side + random.uniform()) / rays.side,
+                 v = y + (k / rays.side + random.uniform()) / rays.side;
+    bool inside = true;
+    for (std::size_t i = 0; inside && i < p.size; ++i) {
+      const Corner &a = p.corners[i], &b = p.corners[i + 1 == p.size ? 0 : i + 1];
+      inside = sign * ((a.x - u) * (b.y - v) - (a.y - v) * (b.x - u)) > 0;
+    }
+    if (!inside) continue;
+    sum.area += sign * one;
+    sum.height += sign * one * (plane[0] + plane[1] * u + plane[2] * v - from_m);
+  }
+  return sum;
+}
+
 void include(PixelBox& box, std::array<int, 2> x, std::array<int, 2> y) {
   if (x[0] >= x[1] || y[0] >= y[1]) return;
   if (box.empty()) {
@@ -84,6 +114,16 @@ void include(PixelBox& box, std::array<int, 2> x, std::array<int, 2> y) {
   }
   box.x_begin = std::min(box.x_begin, x[0]), box.x_end = std::max(box.x_end, x[1]);
   box.y_begin = std::min(box.y_begin, y[0]), box.y_end = std::max(box.y_end, y[1]);
+}
+
+// Of a triangle that is no wall; walls are met by no ray.
+std::array<double, 3> plane_of(const Polygon& triangle) {
+  const auto& [a, b, c] = std::tie(triangle.corners[0], triangle.corners[1], triangle.corners[2]);
+  const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  if (area == 0) return {a.z, 0, 0};
+  const double x = ((b.z - a.z) * (c.y - a.y) - (b.y - a.y) * (c.z - a.z)) / area;
+  const double y = ((b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x)) / area;
+  return {a.z - x * a.x - y * a.y, x, y};
 }
 
 // `most`: the largest area of one triangle in the pixel so far.
@@ -100,12 +140,13 @@ void add_facing(LayerCoverage::Facing& facing, std::size_t pixel, std::uint32_t 
 struct CoverageSweep::Slice {
   Polygon polygon;
   std::uint32_t triangle = 0;
+  std::array<double, 3> plane{};  // z over x and y, pixels
   std::array<int, 2> columns{}, rows{};
 };
 
 CoverageSweep::CoverageSweep(std::span<const Vec3> positions_m, std::span<const std::array<std::uint32_t, 3>> triangles,
-                             const PixelGrid& grid, double bottom_m)
-    : positions_m_(positions_m), triangles_(triangles), grid_(grid), by_height_(triangles.size()) {
+                             const PixelGrid& grid, double bottom_m, const Rays& rays)
+    : positions_m_(positions_m), triangles_(triangles), grid_(grid), rays_(rays), by_height_(triangles.size()) {
   std::iota(by_height_.begin(), by_height_.end(), 0u);
   const auto lowest = [&](std::uint32_t t) {
     const auto& [a, b, c] = triangles_[t];
@@ -152,6 +193,7 @@ std::vector<CoverageSweep::Slice> CoverageSweep::slices(double bottom_m, double 
         Slice& slice = all[k];
         cut<&Corner::z>(above, top_m, slice.polygon, unused);
         slice.triangle = active_[k];
+        slice.plane = plane_of(triangle);
         if (slice.polygon.size < 3) return;
         slice.columns = covered(extent<&Corner::x>(slice.polygon), grid_.width_px);
         slice.rows = covered(extent<&Corner::y>(slice.polygon), grid_.height_px);
@@ -206,7 +248,8 @@ double CoverageSweep::fill_row(std::span<const Slice> slices, std::span<const st
       const Polygon whole = rest;
       cut<&Corner::x>(whole, i + 1, part, rest);
       if (part.size < 3) continue;
-      const auto [area, height] = integral(part, layer_.bottom_m);
+      const auto [area, height] =
+          rays_.side > 0 ? by_rays(part, slice.plane, layer_.bottom_m, i, row, rays_) : integral(part, layer_.bottom_m);
       share[i] += height - thickness * area;
       below[i] += area;
       const std::size_t pixel = first + static_cast<std::size_t>(i);

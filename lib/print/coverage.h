@@ -8,6 +8,10 @@
 // pixel, over (z1 - z0). Triangles are clipped to the layer, to rows and to pixels, and what is left is a convex
 // polygon, over which a linear function is its mean times the polygon's area: no sample, no tolerance.
 //
+// By jittered rays instead (Luongo et al. 2020, section 3.4): of a pixel's n x n rays, one in each cell of a grid,
+// those that meet the polygon stand for its area and height. Exact along the ray; over the pixel the share of one that
+// is half covered scatters by 1 / (2 n) at most.
+//
 // Coincident faces of neighbours cancel, cavities count as what they are; where bodies overlap the sum exceeds 1, is
 // cut there, and says so. Frame of the print: x along the rows of pixels, y along columns, z away from the platform;
 // metres.
@@ -48,12 +52,17 @@ struct LayerCoverage {
   double excess = 0;  // the most by which a voxel was more than full: above 1e-9 bodies overlap or the mesh is open
 };
 
+struct Rays {
+  int side = 0;  // along each axis of a pixel; 0: exact
+  std::uint64_t seed = 0;
+};
+
 class CoverageSweep {
  public:
   // Triangles index `positions_m`, counter-clockwise seen from outside. Both must outlive the sweep. What lies outside
   // of the grid is not seen: Error(data) is the caller's to give.
   CoverageSweep(std::span<const Vec3> positions_m, std::span<const std::array<std::uint32_t, 3>> triangles,
-                const PixelGrid& grid, double bottom_m);
+                const PixelGrid& grid, double bottom_m, const Rays& rays = {});
   // The layer from where the last one ended (at first: `bottom_m`) up to `top_m`. What was below `bottom_m` at the
   // beginning counts as below. The same bytes for any number of threads.
   const LayerCoverage& next(double top_m);
@@ -68,6 +77,7 @@ class CoverageSweep {
   std::span<const Vec3> positions_m_;
   std::span<const std::array<std::uint32_t, 3>> triangles_;
   PixelGrid grid_;
+  Rays rays_;
   std::vector<std::uint32_t> by_height_;  // triangles, by their lowest corner
   std::size_t admitted_ = 0;              // of them
   std::vector<std::uint32_t> active_;     // that reach into the layer, ascending

@@ -14,7 +14,7 @@
 namespace gonio::print {
 namespace {
 
-constexpr int patch_px = 160, border_px = 8, slab = 2, steps = 12, halvings = 10;
+constexpr int patch_px = 112, border_px = 8, slab = 2, steps = 8, halvings = 9;
 constexpr double close_enough = 0.05, aperture_rad = 3 * pi / 180;
 constexpr double facet_alpha = 0.1;  // roughness of the resin below what a print controls
 
@@ -110,6 +110,14 @@ class Search {
         seed_(seed),
         place_(place),
         range_(range_of(use_, wish.figure, printer.layer_m, place)) {}
+
+  // Do the ends of the range and its middle leave the wished value between them?
+  bool may_reach() {
+    Design ends;
+    for (const double s : {0.0, 0.5, 1.0}) look(s, ends);
+    const auto [least, most] = std::ranges::minmax(ends.tried, {}, &DesignStep::figure);
+    return least.figure <= wish_.value && wish_.value <= most.figure;
+  }
 
   Design found() {
     Design out;
@@ -222,15 +230,11 @@ io::HeightMap printed_patch(const Printer& printer, const relief::ShareAt& struc
 Design design(const Printer& printer, const Wish& wish, const std::optional<GroundAt>& ground,
               const std::optional<manifest::MicrostructureUse>& form, int points, std::uint64_t seed,
               const std::string& place) {
-  std::optional<Design> best;
-  for (const manifest::MicrostructureUse& use :
-       form ? std::vector<manifest::MicrostructureUse>{*form} : forms_of(printer, wish.figure)) {
-    Design found = Search(printer, wish, ground, use, points, seed, place).found();
-    const auto off = [&](const Design& d) { return std::abs(d.reached - wish.value); };
-    if (!best || off(found) < off(*best)) best = std::move(found);
-    if (best->met) break;
-  }
-  return *best;
+  const std::vector<manifest::MicrostructureUse> forms =
+      form ? std::vector<manifest::MicrostructureUse>{*form} : forms_of(printer, wish.figure);
+  for (std::size_t k = 0; k + 1 < forms.size(); ++k)
+    if (Search search(printer, wish, ground, forms[k], points, seed, place); search.may_reach()) return search.found();
+  return Search(printer, wish, ground, forms.back(), points, seed, place).found();
 }
 
 }  // namespace gonio::print

@@ -65,13 +65,13 @@ void snap_to_layers(SlicedBody& body, const Printer& printer, double bottom_m, d
 
 // One body over its own part of the picture.
 struct Slicer::Sweep {
-  Sweep(const SlicedBody& of, const Bounds& bounds, const PixelGrid& whole)
+  Sweep(const SlicedBody& of, const Bounds& bounds, const PixelGrid& whole, const Rays& rays)
       : body(of),
         low(bounds.low),
         top_m(bounds.high.z),
         box(part(bounds, whole)),
         grid(grid_of(box, whole)),
-        coverage(of.positions_m, of.triangles, grid, 0) {}
+        coverage(of.positions_m, of.triangles, grid, 0, rays) {}
 
   static PixelBox part(const Bounds& b, const PixelGrid& whole) {
     const auto pixel = [](double m, double corner, double size, int count, bool end) {
@@ -144,7 +144,7 @@ double Slicer::Sweep::structure_over(int x, int y, std::uint32_t triangle, doubl
   return sum / (samples * samples);
 }
 
-Slicer::Slicer(const Printer& printer, const std::vector<SlicedBody>& bodies, int samples)
+Slicer::Slicer(const Printer& printer, const std::vector<SlicedBody>& bodies, int samples, const Rays& rays)
     : printer_(printer), samples_(samples) {
   const PixelGrid grid = printer.grid();
   double top_m = 0;
@@ -153,7 +153,7 @@ Slicer::Slicer(const Printer& printer, const std::vector<SlicedBody>& bodies, in
     check_fits(body, b, grid);
     if (body.axes == StructureAxes::texture && body.texture.size() != body.positions_m.size() && body.structured())
       throw Error(Exit::data, body.name, "has no texture coordinates", "bring a mesh with them, or other axes");
-    sweeps_.push_back(std::make_unique<Sweep>(body, b, grid));
+    sweeps_.push_back(std::make_unique<Sweep>(body, b, grid, rays));
     top_m = std::max(top_m, b.high.z);
   }
   for (double z = 0; z < top_m - 1e-6 * printer.layer_m; ++layers_) z += printer.thickness_m(layers_);

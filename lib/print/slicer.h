@@ -58,7 +58,7 @@ std::vector<std::uint8_t> greys_of(const LayerPicture& layer, const Printer& pri
 class Slicer {
  public:
   // The bodies outlive it. Error(data) for a body that leaves the printer's picture or the platform.
-  Slicer(const Printer& printer, const std::vector<SlicedBody>& bodies, int samples = 4);
+  Slicer(const Printer& printer, const std::vector<SlicedBody>& bodies, int samples = 4, const Rays& rays = {});
   ~Slicer();
   std::size_t layers() const { return layers_; }  // up to the highest top
   PixelBox box() const;                           // of all bodies, within the picture

@@ -201,6 +201,32 @@ TEST(Coverage, SurfacesThatFaceUpAreMeasured) {
   EXPECT_NEAR(l.up.area[0], 0.25, 1e-12);
 }
 
+// Rays scatter about the exact share by what a grid of jittered places allows, and leave no trace: above the body all
+// rays have left it.
+TEST(Coverage, JitteredRaysScatterAboutIt) {
+  Random random(4, 9);
+  const PixelGrid grid{12, 10, {1.1e-5, 0.9e-5}, {-2e-6, 1e-6}};
+  double sum = 0, sum2 = 0, n = 0;
+  for (int world = 0; world < 20; ++world) {
+    const Body body = bumpy({6e-5, 4.6e-5, 3e-5}, {4.2e-5, 3.1e-5, 2.2e-5}, random);
+    CoverageSweep exact(body.positions_m, body.triangles, grid, tops_m[0]);
+    CoverageSweep rays(body.positions_m, body.triangles, grid, tops_m[0], {.side = 6, .seed = 1});
+    for (std::size_t l = 1; l < tops_m.size(); ++l) {
+      const std::vector<double> truth = exact.next(tops_m[l]).share;
+      const LayerCoverage& layer = rays.next(tops_m[l]);
+      EXPECT_LT(layer.excess, 1e-9);
+      for (std::size_t k = 0; k < truth.size(); ++k) {
+        const double off = layer.share[k] - truth[k];
+        EXPECT_LT(std::abs(off), 6.0 / 36);
+        if (truth[k] > 0.01 && truth[k] < 0.99) sum += off, sum2 += off * off, n += 1;
+      }
+    }
+    for (const double share : rays.next(1e-4).share) EXPECT_NEAR(share, 0, 1e-12);
+  }
+  EXPECT_NEAR(sum / n, 0, 4 * std::sqrt(sum2) / n);
+  EXPECT_LT(std::sqrt(sum2 / n), 1.0 / 12);
+}
+
 TEST(Coverage, BodiesThatOverlapAreSaid) {
   const PixelGrid grid{4, 4, {1e-5, 1e-5}, {0, 0}};
   Body body = box({0, 0, 0}, {2e-5, 2e-5, 2e-5});

@@ -10,12 +10,13 @@
 #include "base/text.h"
 #include "contrast/measure/matrix_code.h"
 #include "io/codes.h"
+#include "io/obj.h"
 #include "io/raster.h"
-#include "io/stl.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/mesh.h"
 #include "mesh/mesh.h"
 #include "mesh/topology.h"
+#include "print/mend.h"
 #include "relief/microstructure_use.h"
 #include "report/mesh_view.h"
 #include "tools/dlp-slice/work.h"
@@ -30,13 +31,8 @@ double unit_m(const std::string& unit) {
 io::TriangleMesh read_mesh(Work& work, const std::filesystem::path& path) {
   work.call.note_input(path);
   const std::string extension = lower_case(path.extension().string());
-  io::TriangleMesh mesh;
-  if (extension == ".ply")
-    mesh = io::read_ply(path, {.properties = {}, .labels = true});
-  else if (extension == ".stl")
-    mesh = io::read_stl(path);
-  else
-    throw Error(Exit::data, path.string(), "is no mesh that is read: PLY or STL", "convert it");
+  io::TriangleMesh mesh =
+      extension == ".ply" ? io::read_ply(path, {.properties = {}, .labels = true}) : io::read_mesh(path);
   if (extension != ".ply" && !work.call.given("unit"))
     throw Error(Exit::usage, "--unit", "is missing: " + path.filename().string() + " does not say what its numbers are",
                 "add, say, --unit mm");
@@ -60,19 +56,29 @@ void weld(io::TriangleMesh& mesh) {
   if (!mesh.labels.empty()) mesh.labels.resize(kept);
 }
 
-double closed_volume(const io::TriangleMesh& mesh, const std::string& place) {
+mesh::Topology topology_of(const io::TriangleMesh& mesh) {
   mesh::Mesh of;
   of.positions_m = mesh.positions_m, of.triangles = mesh.triangles;
-  const mesh::Topology topology = mesh::topology_of(of);
-  if (!topology.closed())
-    throw Error(Exit::data, place,
-                format("is not closed: %zu edges with one face, %zu between faces that look opposite ways",
-                       topology.boundary_edges, topology.disagreeing_edges),
-                "close it: ct-mesh-clean or an editor");
-  if (!(topology.volume_m3 > 0))
-    throw Error(Exit::data, place, format("encloses %.3g mm^3: its faces look inwards", topology.volume_m3 * 1e9),
-                "turn them round");
-  return topology.volume_m3;
+  return mesh::topology_of(of);
+}
+
+// A sound mesh with labels or texture coordinates keeps them; others are made fit to be sliced, or refused.
+io::TriangleMesh sound(Work& work, io::TriangleMesh mesh, const std::string& place, manifest::PrintedPart& part) {
+  const bool more = !mesh.labels.empty() || !mesh.texture.empty();
+  if (more) {
+    weld(mesh);
+    const mesh::Topology topology = topology_of(mesh);
+    if (!mesh.triangles.empty() && topology.closed() && topology.crowded_edges == 0 && topology.volume_m3 > 0) {
+      part.volume_m3 = topology.volume_m3;
+      return mesh;
+    }
+    log(LogLevel::warning, place + ": is not sound; its labels and texture coordinates are lost as it is mended");
+  }
+  const double largest = work.call.given("largest-hole") ? work.call.number("largest-hole") : 0;
+  print::Mended mended = print::mend(std::move(mesh), {.largest_hole_m = largest}, place);
+  for (const std::string& step : mended.steps) log(LogLevel::info, place + ": " + step);
+  part.repaired = mended.steps, part.volume_m3 = mended.volume_m3;
+  return std::move(mended.mesh);
 }
 
 struct Placing {
@@ -247,17 +253,15 @@ void open_bodies(Work& work) {
   const std::vector<std::string>& files = work.call.texts("MESH");
   const std::vector<double> turned = turns(work.call, files.size());
   std::vector<io::TriangleMesh> meshes;
+  std::vector<io::TriangleMesh>& meshes_to_write = work.meshes;
   std::vector<Extent> extents;
   std::vector<manifest::PrintedPart>& parts = work.entry().parts;
   parts.clear(), work.entry().microstructures.clear();
   for (std::size_t i = 0; i < files.size(); ++i) {
-    io::TriangleMesh mesh = read_mesh(work, files[i]);
-    weld(mesh);
-    if (mesh.triangles.empty()) throw Error(Exit::data, files[i], "has no triangle", "bring a mesh with faces");
     manifest::PrintedPart part;
-    part.volume_m3 = closed_volume(mesh, files[i]);
+    io::TriangleMesh mesh = sound(work, read_mesh(work, files[i]), files[i], part);
     part.mesh = free_name(parts, file_stem(std::filesystem::path(files[i]).stem().string()));
-    enter(work, part.mesh, mesh);
+    meshes_to_write.push_back(mesh);
     turn(mesh, turned[i]);
     part.turn_rad = turned[i];
     extents.push_back(extent_of(mesh)), meshes.push_back(std::move(mesh)), parts.push_back(std::move(part));
@@ -280,6 +284,11 @@ void open_bodies(Work& work) {
   if (work.call.flag("beneath"))
     for (manifest::PrintedPart& part : parts)
       if (!part.microstructure.empty() || !part.labels.empty()) part.hidden_printed_m2 = part.hidden_m2;
+}
+
+void enter_bodies(Work& work) {
+  const std::vector<manifest::PrintedPart>& parts = work.entry().parts;
+  for (std::size_t i = 0; i < parts.size(); ++i) enter(work, parts[i].mesh, work.meshes[i]);
 }
 
 std::vector<print::JobPreview> previews_of(const Work& work) {

@@ -37,16 +37,18 @@ void fit_growth(Work& work) {
   wish.slab_layers = static_cast<std::size_t>(call.integer("slab-layers"));
   wish.greys = static_cast<int>(call.integer("greys")),
   wish.repetitions = static_cast<int>(call.integer("repetitions"));
-  work.sample = print::calibration_sample(work.printer, wish);
   const std::vector<std::string>& maps = call.texts("growth-from");
+  std::vector<print::MapPlace> places;
+  for (std::size_t k = 0; k < maps.size(); ++k) places.push_back(place_of(call, k, maps.size()));
+  work.sample = print::calibration_sample(work.printer, wish);
   print::PrintedGradient all;
   const std::string place = maps.size() == 1 ? maps[0] : "--growth-from";
   for (std::size_t k = 0; k < maps.size(); ++k) {
     call.note_input(maps[k]);
     const double step = call.given("map-step") ? call.number("map-step") : 0;
     const io::HeightMap map = io::read_height_map(maps[k], {.step_x_m = step, .step_y_m = step});
-    const print::SampleReading reading = print::read_gradients(
-        map, *work.sample, work.printer, place_of(call, k, maps.size()), call.number("search"), maps[k]);
+    const print::SampleReading reading =
+        print::read_gradients(map, *work.sample, work.printer, places[k], call.number("search"), maps[k]);
     work.notes.push_back(
         format("%s: %zu whole repetitions, %d in part; its first point lies at %.4f, %.4f mm; correlation with "
                "what was sent %.3f",

@@ -49,6 +49,8 @@ void add_bodies(std::vector<cli::Option>& all) {
                  .dimension = Dimension::ratio,
                  .lower = 1e-6,
                  .upper = 1e6});
+  all.push_back(
+      length("largest-hole", "Diagonal of the largest hole that is closed. Default: a twentieth of the mesh's."));
   all.push_back(text("at",
                      "Where the middle of a mesh's base stands on the platform; once for each mesh, in their "
                      "order. Default: in a row about the middle.",
@@ -185,8 +187,8 @@ void check_options(const cli::Invocation& call, Action action) {
       refuse(std::string("--") + option, "does nothing in this call", "leave it out");
   };
   only("structure", {Action::slice, Action::wish});
-  for (const char* option : {"unit", "scale", "at", "turn", "gap", "code", "axes", "texture-length", "beneath",
-                             "coverage", "rays", "compensate", "iterations"})
+  for (const char* option : {"unit", "scale", "largest-hole", "at", "turn", "gap", "code", "axes", "texture-length",
+                             "beneath", "coverage", "rays", "compensate", "iterations"})
     only(option, {Action::slice});
   only("samples", {Action::slice, Action::wish});
   for (const char* option : {"predict"}) only(option, {Action::slice, Action::sample});

@@ -81,6 +81,11 @@ std::optional<print::GroundAt> ground_asked(Work& work) {
   return print::ground_of(found->second, work.call.seed);
 }
 
+void check_prediction(Work& work) {
+  window_of(work);
+  ground_asked(work);
+}
+
 void predict(Work& work) {
   const std::unique_ptr<print::ArchiveReader> archive = print::open_archive(work.archive);
   print::Job job = archive->job();

@@ -57,6 +57,7 @@ void take_from_file(Work& work) {
   }
   work.call.document.prints[name] = std::move(machine);
   work.printer.name = name;
+  if (!work.call.has_document) work.call.document.name = path.string();  // for messages
 }
 
 std::vector<double> layers_of(const std::vector<LayerStep>& steps) {

@@ -47,6 +47,7 @@ Exit run(cli::Invocation& call) {
                                      : call.out.empty() ? std::filesystem::path()
                                                         : call.output_path("report.html");
   open_printer(work);
+  if (action == Action::predict || call.flag("predict")) check_prediction(work);
   if (action == Action::slice) open_bodies(work);
   if (action == Action::slice || action == Action::sample) send(work, action);
   if (action == Action::predict) call.note_input(work.archive = call.text("sent"));
@@ -75,7 +76,7 @@ const cli::Program& gonio_program() {
       .options = options(),
       .operands = {{.name = "MESH",
                     .type = Type::text,
-                    .help = "A closed mesh, PLY or STL; several stand side by side.",
+                    .help = "A mesh, PLY, STL or OBJ, mended where it is not closed; several stand side by side.",
                     .repeat = true}},
       .takes_out = true,
       .takes_seed = true,

@@ -150,7 +150,10 @@ void compensate(Work& work, print::Slicer& slicer, Sender& sender) {
 }  // namespace
 
 void send_bodies(Work& work) {
-  print::Slicer slicer(work.printer, work.bodies, static_cast<int>(work.call.integer("samples")));
+  const auto rays = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(work.call.integer("rays")))));
+  print::Slicer slicer(work.printer, work.bodies, static_cast<int>(work.call.integer("samples")),
+                       {.side = work.call.text("coverage") == "rays" ? rays : 0, .seed = work.call.seed});
+  enter_bodies(work);
   Sender sender(work, slicer.layers());
   if (work.call.flag("compensate")) {
     compensate(work, slicer, sender);

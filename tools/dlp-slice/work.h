@@ -36,6 +36,7 @@ struct Work {
   cli::Invocation& call;
   print::Printer printer;
   std::vector<print::SlicedBody> bodies;
+  std::vector<io::TriangleMesh> meshes;  // as they are entered: metres, not yet set down
   std::optional<print::CalibrationSample> sample;
   std::filesystem::path archive;
   Totals totals;
@@ -51,14 +52,16 @@ void open_printer(Work& work);  // printer.cpp: --printer, --print, --layer, --l
 print::Job job_of(Work& work);  // what the process says of the job
 double time_of(const Work& work, std::size_t layers);
 
-void open_bodies(Work& work);  // bodies.cpp: meshes, their places and structures
+void open_bodies(Work& work);   // bodies.cpp: meshes, their places and structures
+void enter_bodies(Work& work);  // writes them
 std::vector<print::JobPreview> previews_of(const Work& work);
 
 // send.cpp: layers into the archive.
 void send_bodies(Work& work);
 void send_sample(Work& work);
 
-void predict(Work& work);  // predict.cpp: from the archive
+void predict(Work& work);           // predict.cpp: from the archive
+void check_prediction(Work& work);  // what can be wrong with it, before anything is written
 std::optional<print::GroundAt> ground_asked(Work& work);
 
 void fit_growth(Work& work);   // growth.cpp
