@@ -101,7 +101,10 @@ manifest::PrintGrowth growth_entry(const GrowthFit& fit, double significance) {
   for (const auto& row : fit.covariance) entry.covariance.insert(entry.covariance.end(), row.begin(), row.end());
   entry.lack_of_fit_p = fit.lack_of_fit_p, entry.rms_m = fit.rms_m;
   entry.repetitions = static_cast<std::int64_t>(std::lround(fit.degrees)) + 1;
-  if (fit.lack_of_fit_p < significance) entry.greys = fit.table.greys(), entry.heights_m = fit.table.heights_m();
+  if (fit.lack_of_fit_p < significance) {
+    entry.greys = fit.table.greys(), entry.heights_m = fit.table.heights_m();
+    for (double& height : entry.heights_m) height = std::max(0.0, height);  // what noise leaves of nothing
+  }
   return entry;
 }
 

@@ -93,7 +93,10 @@ void add_output(std::vector<cli::Option>& all) {
   for (const print::ArchiveFormat* format : print::all_archive_formats())
     formats += (formats.empty() ? "" : ", ") + std::string(format->name);
   all.push_back(
-      {.name = "to", .type = Type::output_file, .help = "Layers to write. Default: layers.sl1s below --out."});
+      {.name = "to",
+       .type = Type::output_file,
+       .help =
+           "Layers to write. Default: layers.sl1s below --out, or layers.zip where the printer states no exposure."});
   all.push_back(text("format", ("Its format, where the name does not say it: " + formats + ".").c_str(), "NAME"));
   all.push_back({.name = "mirror",
                  .type = Type::choice,

@@ -34,8 +34,10 @@ void enter_totals(Work& work) {
 }
 
 void send(Work& work, Action action) {
-  work.archive =
-      work.call.given("to") ? std::filesystem::path(work.call.text("to")) : work.call.output_path("layers.sl1s");
+  work.archive = work.call.given("to") ? std::filesystem::path(work.call.text("to"))
+                                       : work.call.output_path(work.entry().process.contains("exposure_s")
+                                                                   ? "layers.sl1s"
+                                                                   : "layers.zip");  // SL1 states times
   action == Action::sample ? send_sample(work) : send_bodies(work);
   enter_totals(work);
 }
@@ -82,7 +84,8 @@ const cli::Program& gonio_program() {
       .takes_seed = true,
       .sections_read = {"files", "ground_noises", "prints"},
       .sections_written = {"files", "ground_noises", "meshes", "prints", "reliefs"},
-      .files = {{"layers.sl1s", "what is sent to the printer, unless --to names it"},
+      .files = {{"layers.sl1s",
+                 "what is sent to the printer, unless --to names it; layers.zip where no exposure is stated"},
                 {"MESH.ply", "every mesh as it was sliced, metres"},
                 {"predicted.x3p, predicted.ply",
                  "--predict: the surface seen from the projector, as heights and as a mesh"},

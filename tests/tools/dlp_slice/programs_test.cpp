@@ -92,9 +92,10 @@ TEST_F(DlpSlice, WhatNothingReachesIsSaid) {
 TEST_F(DlpSlice, TheCalibrationSampleGivesTheGrowth) {
   write_file(path("large.json"),
              R"({"gonio": 1, "prints": {"large": {"pixel_m": [1.5e-5, 1.5e-5], "width_px": 1300, "height_px": 700,
-      "layer_m": 1.8e-5, "growth": {"alpha_m": 1.8e-5, "beta_m": 0.9e-5, "gamma": -0.012}}}})");
+      "layer_m": 1.8e-5, "growth": {"alpha_m": 1.8e-5, "beta_m": 0.9e-5, "gamma": -0.012}, "ground": "quiet"}},
+      "ground_noises": {"quiet": {"parts": [{"sq_m": 0.3e-6, "cell_m": 3e-5}]}}})");
   ASSERT_EQ(call({"--calibration-sample", "--slab-layers", "2", "--repetitions", "12", "--printer", "large.json",
-                  "--out", "s", "--predict", "--ground", "published", "--window", "0mm,-2mm,8mm,7mm", "-o", "s.json"})
+                  "--out", "s", "--predict", "--window", "0mm,-2mm,8mm,7mm", "-o", "s.json"})
                 .status,
             0);
   write_file(path("unknown.json"),
