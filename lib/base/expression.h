@@ -1,7 +1,7 @@
 // What the user writes as a formula: a forward model over the columns of a table and named parameters, a pattern over
-// places. Evaluated by muParser. Constant pi; functions sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp ln log10
-// log2 sqrt abs sign rint min max sum avg (and log, which is ln); operators + - * / ^, comparisons, && ||, and
-// condition ? a : b. Columns are in SI and are named with or without their unit: theta for theta_rad.
+// places. Evaluated by muParser. Constant pi; functions sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh
+// atanh exp ln log10 log2 sqrt abs sign rint min max sum avg (and log, which is ln); operators + - * / ^, comparisons,
+// && ||, and condition ? a : b. Columns are in SI and are named with or without their unit: theta for theta_rad.
 #pragma once
 #include <memory>
 #include <mutex>

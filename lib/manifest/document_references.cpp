@@ -26,7 +26,6 @@
 #include "manifest/sections/pattern.h"
 #include "manifest/sections/placement.h"
 #include "manifest/sections/plan.h"
-#include "manifest/sections/print.h"
 #include "manifest/sections/projection.h"
 #include "manifest/sections/reconstruction.h"
 #include "manifest/sections/registration.h"
@@ -135,29 +134,6 @@ void check_reliefs(const Document& d) {
     for (std::size_t i = 0; i < ground.reliefs.size(); ++i)
       must_exist(d.reliefs, "reliefs", ground.reliefs[i], at + "/reliefs/" + std::to_string(i));
     must_exist(d.reliefs, "reliefs", ground.example, at + "/example");
-  }
-}
-
-void check_prints(const Document& d) {
-  for (const auto& [name, print] : d.prints) {
-    const std::string at = place(d, "/prints/" + name);
-    must_exist(d.files, "files", print.layers, at + "/layers");
-    must_exist(d.ground_noises, "ground_noises", print.ground, at + "/ground");
-    must_exist(d.reliefs, "reliefs", print.relief, at + "/relief");
-    must_exist(d.meshes, "meshes", print.mesh, at + "/mesh");
-    must_exist(d.surfaces, "surfaces", print.surface, at + "/surface");
-    if (print.pixel_m.size() != 2)
-      throw Error(Exit::data, at + "/pixel_m", "has " + std::to_string(print.pixel_m.size()) + " numbers",
-                  "give two lengths [x, y]");
-    for (const auto& [key, use] : print.microstructures)
-      must_exist(d.files, "files", use.file, at + "/microstructures/" + key + "/file");
-    for (std::size_t i = 0; i < print.parts.size(); ++i) {
-      const std::string part = at + "/parts/" + std::to_string(i);
-      must_exist(d.meshes, "meshes", print.parts[i].mesh, part + "/mesh");
-      must_exist(print.microstructures, "microstructures", print.parts[i].microstructure, part + "/microstructure");
-      for (const auto& [label, use] : print.parts[i].labels)
-        must_exist(print.microstructures, "microstructures", use, part + "/labels/" + label);
-    }
   }
 }
 

@@ -20,5 +20,6 @@ void must_exist(const std::map<std::string, T>& section, const std::string& sect
 }
 
 void check_alignments(const Document& d);
+void check_prints(const Document& d);
 
 }  // namespace gonio::manifest

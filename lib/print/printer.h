@@ -26,7 +26,7 @@ class Growth {
   // For a voxel that is to be solid by a share of the layer; dark below half of the 255th part, for the darkest grey
   // that cures makes a film of any height.
   double grey_of_share(double share, double layer_m) const {
-    return share < 0.5 / 255 ? 0 : grey(share * layer_m, layer_m);
+    return share < 1 / 510.0 ? 0 : grey(share * layer_m, layer_m);
   }
   double threshold() const;  // the darkest grey that cures
   bool proportional() const { return !law_; }

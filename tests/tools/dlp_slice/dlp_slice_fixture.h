@@ -34,9 +34,11 @@ class DlpSlice : public testing::Test {
     write_file(path("printer.json"), printer_text());
   }
   static std::string printer_text(const std::string& more = "") {
-    return R"({"gonio": 1, "prints": {"bench": {"pixel_m": [1e-5, 1e-5], "width_px": 200, "height_px": 160, "layer_m": 1.8e-5,
+    return R"({"gonio": 1, "prints": {"bench": {"pixel_m": [1e-5, 1e-5], "width_px": 200, "height_px": 160,
+      "layer_m": 1.8e-5,
       "growth": {"alpha_m": 1.8e-5, "beta_m": 1.024e-5, "gamma": -0.01},
-      "process": {"exposure_s": 3, "bottom_exposure_s": 20, "bottom_layers": 2, "lift_m": 0.004, "lift_m_per_s": 0.002}})" +
+      "process": {"exposure_s": 3, "bottom_exposure_s": 20, "bottom_layers": 2, "lift_m": 0.004,
+                  "lift_m_per_s": 0.002}})" +
            more + "}}";
   }
   fs::path path(const std::string& name) const { return folder_ / name; }
