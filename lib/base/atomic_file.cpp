@@ -17,6 +17,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -77,6 +78,7 @@ class Descriptor {
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
   }
+  Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
@@ -165,25 +167,34 @@ void close_checked(Descriptor& file, const std::filesystem::path& target) {
   if (::close(file.release()) != 0 && errno != EINTR) throw_write_error(target, errno);
 }
 
-// True where the file system knows nameless files; then the target is in place.
-bool write_nameless(const std::filesystem::path& target, std::string_view bytes) {
+// A nameless file in the target's folder; not valid where the file system knows none.
+Descriptor nameless_file(const std::filesystem::path& target) {
   Descriptor file(::open(folder_of(target).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
-  if (!file.valid()) {
-    if (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL) return false;
-    throw_create_error(target, errno);
-  }
-  write_all(file.get(), bytes, target);
+  if (!file.valid() && errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) throw_create_error(target, errno);
+  return file;
+}
+
+// A nameless file receives a name beside the target, and then its place. False where it cannot have one: no /proc here.
+bool put_nameless_in_place(Descriptor& file, const std::filesystem::path& target) {
   flush(file.get(), target);
   const auto temporary = temporary_for(target);
   const Registered registered(temporary.string());
   const std::string name = "/proc/self/fd/" + std::to_string(file.get());
   if (::linkat(AT_FDCWD, name.c_str(), AT_FDCWD, temporary.c_str(), AT_SYMLINK_FOLLOW) != 0) {
     if (full(errno)) throw_write_error(target, errno);
-    return false;  // no /proc here
+    return false;
   }
   close_checked(file, target);
   rename_into_place(temporary, target);
   return true;
+}
+
+// True where the file system knows nameless files; then the target is in place.
+bool write_nameless(const std::filesystem::path& target, std::string_view bytes) {
+  Descriptor file = nameless_file(target);
+  if (!file.valid()) return false;
+  write_all(file.get(), bytes, target);
+  return put_nameless_in_place(file, target);
 }
 
 void write_named(const std::filesystem::path& target, std::string_view bytes) {
@@ -241,19 +252,20 @@ void write_file_through(const std::filesystem::path& path,
 }
 
 struct GrowingFile::Temporary {
-  explicit Temporary(const std::filesystem::path& where)
-      : path(where),
-        registered(where.string()),
-        file(::open(where.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {}
-  std::filesystem::path path;
-  Registered registered;
+  explicit Temporary(const std::filesystem::path& target) : file(nameless_file(target)) {}
+  Temporary(const std::filesystem::path& name, int flags)
+      : path(name), registered(std::in_place, name.string()), file(::open(name.c_str(), flags, 0666)) {}
+  std::filesystem::path path;  // empty: nameless
+  std::optional<Registered> registered;
   Descriptor file;
 };
 
 GrowingFile::GrowingFile(const std::filesystem::path& path) : path_(path), target_(resolved(path)) {
   throw_if_interrupted();
   refuse_all_but_files(path, target_);
-  temporary_ = std::make_unique<Temporary>(temporary_for(target_));
+  if (::access("/proc/self/fd", X_OK) == 0) temporary_ = std::make_unique<Temporary>(target_);
+  if (temporary_ && temporary_->file.valid()) return;
+  temporary_ = std::make_unique<Temporary>(temporary_for(target_), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC);
   if (!temporary_->file.valid()) throw_create_error(path, errno);
 }
 
@@ -273,9 +285,14 @@ void GrowingFile::overwrite(std::uint64_t at, std::string_view bytes) {
 }
 
 void GrowingFile::commit() {
-  flush(temporary_->file.get(), path_);
-  close_checked(temporary_->file, path_);
-  rename_into_place(temporary_->path, target_);
+  throw_if_interrupted();
+  if (!temporary_->registered) {
+    if (!put_nameless_in_place(temporary_->file, target_)) throw_write_error(path_, errno);
+  } else {
+    flush(temporary_->file.get(), path_);
+    close_checked(temporary_->file, path_);
+    rename_into_place(temporary_->path, target_);
+  }
   temporary_.reset();
 }
 

@@ -2,22 +2,19 @@
 // them.
 #include "io/npz.h"
 
-#include <zip.h>
-
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "io/little_endian.h"
 #include "io/npy_head.h"
+#include "io/zip_file.h"
 
 namespace gonio::io {
 namespace {
 
-constexpr std::uint64_t most_squeezed = 1032, most_entry_bytes = std::uint64_t{1} << 31;
+constexpr std::uint64_t most_entry_bytes = std::uint64_t{1} << 31;
 
 template <class T>
 double element(std::string_view bytes, std::size_t i, bool swapped) {
@@ -75,42 +72,6 @@ std::size_t c_index(std::size_t i, const std::vector<std::size_t>& size) {
   return index;
 }
 
-struct Discard {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
-};
-using Archive = std::unique_ptr<zip_t, Discard>;
-
-Archive opened(const std::string& file, const std::string& place) {
-  zip_error_t error;
-  zip_error_init(&error);
-  zip_source_t* source = zip_source_buffer_create(file.data(), file.size(), 0, &error);
-  zip_t* archive = source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY, &error);
-  const std::string why = archive == nullptr ? zip_error_strerror(&error) : "";
-  zip_error_fini(&error);
-  if (archive == nullptr) {
-    zip_source_free(source);
-    refuse_npy(place, "is no whole NumPy archive (" + why + ")");
-  }
-  return Archive(archive);
-}
-
-std::string content(zip_t* archive, zip_uint64_t index, std::uint64_t file_bytes, const std::string& place) {
-  zip_stat_t stat;
-  zip_stat_init(&stat);
-  if (zip_stat_index(archive, index, 0, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0)
-    refuse_npy(place, "has no length");
-  if (stat.size > most_squeezed * file_bytes || stat.size > most_entry_bytes)
-    refuse_npy(place, "claims " + std::to_string(stat.size) + " bytes, more than its file can hold");
-  std::string bytes(stat.size, '\0');
-  zip_file_t* entry = zip_fopen_index(archive, index, 0);
-  const zip_int64_t read = entry == nullptr ? -1 : zip_fread(entry, bytes.data(), bytes.size());
-  char beyond;  // the checksum is compared where the entry ends
-  const bool ends = read == static_cast<zip_int64_t>(bytes.size()) && zip_fread(entry, &beyond, 1) == 0;
-  if (entry == nullptr || zip_fclose(entry) != 0 || !ends)
-    refuse_npy(place, "is damaged: its checksum or length is wrong");
-  return bytes;
-}
-
 }  // namespace
 
 bool parse_npy(std::string_view bytes, const std::string& place, NpyArray& out) {
@@ -132,21 +93,16 @@ bool parse_npy(std::string_view bytes, const std::string& place, NpyArray& out) 
 }
 
 std::map<std::string, NpyArray> read_npz(const std::filesystem::path& path) {
-  const std::string file = read_file(path), place = path.string();
-  const Archive archive = opened(file, place);
+  const ZipReader archive(path, "NumPy archive");
   std::map<std::string, NpyArray> out;
-  const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
-  for (zip_int64_t i = 0; i < entries; ++i) {
-    const char* entry = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), 0);
-    std::string name = entry == nullptr ? "" : entry;
+  for (std::size_t i = 0; i < archive.entries().size(); ++i) {
+    std::string name = archive.entries()[i].name;
     if (!name.ends_with(".npy")) continue;
     name.resize(name.size() - 4);
     NpyArray array;
-    if (parse_npy(content(archive.get(), static_cast<zip_uint64_t>(i), file.size(), place + "#" + name),
-                  place + "#" + name, array))
-      out[name] = std::move(array);
+    if (parse_npy(archive.read(i, most_entry_bytes), path.string() + "#" + name, array)) out[name] = std::move(array);
   }
-  if (out.empty()) refuse_npy(place, "holds no array of numbers");
+  if (out.empty()) refuse_npy(path.string(), "holds no array of numbers");
   return out;
 }
 

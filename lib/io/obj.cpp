@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/lower_case.h"
+#include "io/model_3mf.h"
 #include "io/stl.h"
 
 namespace gonio::io {
@@ -107,8 +108,10 @@ TriangleMesh read_obj(const std::filesystem::path& path) {
   return parse_obj(read_file(path), path.filename().string());
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path) {
+TriangleMesh read_mesh(const std::filesystem::path& path, bool* in_metres) {
   const std::string extension = lower_case(path.extension().string()), place = path.filename().string();
+  if (in_metres != nullptr) *in_metres = extension == ".3mf";
+  if (extension == ".3mf") return read_3mf(path);
   const std::string file = read_file(path);
   if (extension == ".obj") return parse_obj(file, place);
   if (extension == ".stl") return parse_stl(file, place);

@@ -16,7 +16,8 @@ TriangleMesh read_obj(const std::filesystem::path& path);
 // A whole file; `place` names it in errors.
 TriangleMesh parse_obj(std::string_view file, const std::string& place);
 
-// STL, PLY or OBJ, by the name's ending, else by the file's beginning.
-TriangleMesh read_mesh(const std::filesystem::path& path);
+// STL, PLY, OBJ or 3MF, by the name's ending, else by the file's beginning. Lengths as the file has them, but 3MF's in
+// metres: `in_metres` (may be null) receives which.
+TriangleMesh read_mesh(const std::filesystem::path& path, bool* in_metres = nullptr);
 
 }  // namespace gonio::io

@@ -147,7 +147,7 @@ struct ZipReader::Archive {
   zip_t* zip;
 };
 
-ZipReader::ZipReader(const std::filesystem::path& path) : place_(path.string()) {
+ZipReader::ZipReader(const std::filesystem::path& path, const std::string& called) : place_(path.string()) {
   int code = 0;
   std::error_code failure;
   const std::uint64_t length = std::filesystem::file_size(path, failure);
@@ -159,7 +159,7 @@ ZipReader::ZipReader(const std::filesystem::path& path) : place_(path.string()) 
     zip_error_init_with_code(&error, code);
     const std::string why = zip_error_strerror(&error);
     zip_error_fini(&error);
-    refuse(place_, "is no whole zip archive (" + why + ")");
+    refuse(place_, "is no whole " + called + " (" + why + ")");
   }
   const auto count = static_cast<std::uint64_t>(zip_get_num_entries(archive_->zip, 0));
   if (count > most_entries) refuse(place_, "has " + std::to_string(count) + " entries, more than a million");

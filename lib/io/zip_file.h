@@ -49,7 +49,7 @@ class ZipReader {
  public:
   // Error(no_input), Error(data) for what is no zip, names an entry that leaves the archive ("..", "/", "\"), names one
   // twice, or claims more than its length can hold.
-  explicit ZipReader(const std::filesystem::path& path);
+  explicit ZipReader(const std::filesystem::path& path, const std::string& called = "zip archive");
   ~ZipReader();
   ZipReader(const ZipReader&) = delete;
   ZipReader& operator=(const ZipReader&) = delete;

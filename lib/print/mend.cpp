@@ -227,6 +227,9 @@ class Mending {
 
   void unite() {
     const mesh::United united = mesh::unite(mesh_);
+    if (united.given_up)
+      refuse("meets itself in more than " + std::to_string(united.crossings) + " pairs of triangles",
+             "unite its parts where it was made, or take fewer triangles");
     if (united.crossings > 0)
       steps_.push_back("what overlaps was united: " +
                        counted(united.crossings, "pair of triangles meets", "pairs of triangles meet") + ", " +

@@ -16,8 +16,8 @@
 //     number above 0
 //
 // Refused, Error(data) at `place`: no triangles, numbers that are not finite, indices that lead nowhere, holes beyond
-// the limit, pieces with one side only, and what encloses nothing. Coordinates of vertices that stay do not change,
-// to the last bit; new ones are where triangles meet.
+// the limit, pieces with one side only, what encloses nothing, and more than 4 million pairs of triangles that meet.
+// Coordinates of vertices that stay do not change, to the last bit; new ones are where triangles meet.
 #pragma once
 #include <string>
 #include <vector>

@@ -173,6 +173,24 @@ TEST(Archives, NothingIsLeftWithoutAnEnd) {
   }
 }
 
+TEST(Archives, KilledMidwayTheyLeaveNoFile) {
+  const tests::ScratchFolder folder;
+  const auto path = folder / "job.sl1";
+  write_layers(archive_format(path), path, full_job(8, 8), {Layer(64, 9)});
+  const std::string before = read_file(path);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto writer = archive_format(path).begin(path, full_job(8, 8));
+    writer->add(Layer(64, 7), 0, 25e-6);
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(read_file(path), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
 TEST(Archives, AFolderWithAnythingElseInItIsNotReplaced) {
   const tests::ScratchFolder folder;
   std::ofstream(folder / "thesis.tex") << "years of work";

@@ -146,6 +146,8 @@ Arrangement arrange(const io::TriangleMesh& mesh) {
   Arrangement out;
   const auto pairs = self_intersections(mesh, most_pairs);
   out.crossings = pairs.size();
+  out.complete = pairs.size() < most_pairs;
+  if (!out.complete) return out;
   std::map<std::uint32_t, Marks3> marks;
   for (const auto& [a, b] : pairs) mark(marks, a, b, mesh);
   Vertices vertices(out.positions_m);

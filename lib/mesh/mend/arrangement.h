@@ -15,6 +15,7 @@ struct Arrangement {
   // Of each: triangles before that lie in its plane and cover it, its parent among them, ascending; empty: it alone.
   std::vector<std::vector<std::uint32_t>> covering{};
   std::size_t crossings = 0, cut = 0;  // pairs that met; triangles that were cut
+  bool complete = true;                // false, and nothing else: more than 4 million pairs meet
 };
 Arrangement arrange(const io::TriangleMesh& mesh);
 

@@ -68,6 +68,8 @@ United unite(io::TriangleMesh& mesh) {
   United united;
   Arrangement parts = arrange(mesh);
   united.crossings = parts.crossings, united.cut_triangles = parts.cut;
+  united.given_up = !parts.complete;
+  if (united.given_up) return united;
   std::size_t pieces = 0;
   const std::vector<std::uint32_t> piece = pieces_of(mesh, pieces);
   if (parts.crossings == 0 && pieces == 1) return united;
