@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "io/deflate_runs.h"
+
 namespace gonio::io {
 namespace {
 
@@ -124,6 +126,10 @@ std::size_t size_of_differences(const std::uint8_t* row, std::size_t width) {
 void filter_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t width, std::uint8_t* to,
                 std::uint8_t* trial) {
   to[0] = up;
+  if (std::memcmp(row, above, width) == 0) {
+    std::memset(to + 1, 0, width);
+    return;
+  }
   for (std::size_t x = 0; x < width; ++x) to[x + 1] = static_cast<std::uint8_t>(row[x] - above[x]);
   std::size_t least = size_of_differences(to + 1, width);
   if (least == 0) return;
@@ -142,8 +148,36 @@ void filter_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t 
 
 }  // namespace
 
-std::string encode_png_of_grey_bytes(std::span<const std::uint8_t> rows, std::size_t width) {
-  const std::size_t height = width == 0 ? 0 : rows.size() / width;
+namespace {
+
+// Of pictures that are mostly like the row above, without a look at most of their bytes; nothing for others. Rows that
+// are all dark have no filter, so that they join to one run.
+std::optional<std::string> packed_as_runs(std::span<const std::uint8_t> rows, std::size_t width, std::size_t height) {
+  RunDeflate out;
+  const std::vector<std::uint8_t> nothing(width);
+  const std::size_t most = 1000 + rows.size() / 64;
+  for (std::size_t y = 0; y < height; ++y) {
+    const std::uint8_t *row = rows.data() + y * width, *above = y > 0 ? row - width : nothing.data();
+    const bool dark = std::memcmp(row, nothing.data(), width) == 0;
+    out.put(dark ? none : up, 1);
+    std::size_t x = 0;
+    while (x < width && !dark) {
+      std::size_t same = x;
+      for (std::uint64_t a = 0, b = 0; same + 8 <= width; same += 8) {
+        std::memcpy(&a, row + same, 8), std::memcpy(&b, above + same, 8);
+        if (a != b) break;
+      }
+      while (same < width && row[same] == above[same]) ++same;
+      out.put(0, same - x);
+      for (x = same; x < width && row[x] != above[x]; ++x) out.put(static_cast<std::uint8_t>(row[x] - above[x]), 1);
+    }
+    if (dark) out.put(0, width);
+    if (out.literals() > most) return std::nullopt;
+  }
+  return out.finish();
+}
+
+std::string packed_by_libdeflate(std::span<const std::uint8_t> rows, std::size_t width, std::size_t height) {
   std::vector<std::uint8_t> filtered((width + 1) * height), trial(width + 1), nothing(width);
   for (std::size_t y = 0; y < height; ++y) {
     const std::uint8_t* const row = rows.data() + y * width;
@@ -155,9 +189,18 @@ std::string encode_png_of_grey_bytes(std::span<const std::uint8_t> rows, std::si
   std::string packed(libdeflate_zlib_compress_bound(deflate.get(), filtered.size()), '\0');
   packed.resize(
       libdeflate_zlib_compress(deflate.get(), filtered.data(), filtered.size(), packed.data(), packed.size()));
+  return packed;
+}
+
+}  // namespace
+
+std::string encode_png_of_grey_bytes(std::span<const std::uint8_t> rows, std::size_t width) {
+  const std::size_t height = width == 0 ? 0 : rows.size() / width;
+  std::optional<std::string> packed = packed_as_runs(rows, width, height);
+  if (!packed) packed = packed_by_libdeflate(rows, width, height);
   std::string file("\x89PNG\r\n\x1a\n", 8);
   append_chunk(file, "IHDR", big_endian(width) + big_endian(height) + std::string("\x08\0\0\0\0", 5));
-  append_chunk(file, "IDAT", packed);
+  append_chunk(file, "IDAT", *packed);
   append_chunk(file, "IEND", {});
   return file;
 }

@@ -60,11 +60,12 @@ double Compensation::kept(std::size_t k) const {
 }
 
 bool Compensation::draw() {
-  LayerPicture from;
-  if (ended_ || !source_(from)) {
+  const LayerPicture* const next = ended_ ? nullptr : source_();
+  if (next == nullptr) {
     ended_ = true;
     return false;
   }
+  const LayerPicture& from = *next;
   Voxels v{.index = from.index, .bottom_m = from.bottom_m, .top_m = from.top_m};
   const int wide = box_.x_end - box_.x_begin, high = box_.y_end - box_.y_begin;
   const auto pixels = static_cast<std::size_t>(wide) * static_cast<std::size_t>(high);

@@ -39,7 +39,7 @@ struct CompensatedLayer {
 
 class Compensation {
  public:
-  using Source = std::function<bool(LayerPicture&)>;  // the next layer from the platform on; false after the last
+  using Source = std::function<const LayerPicture*()>;  // the next layer from the platform on; null after the last
   // Every layer's box lies within `box`, about which so much is added as light is to be kept away from.
   Compensation(const Printer& printer, const PixelBox& box, Source source, int iterations = 60);
   ~Compensation();

@@ -137,6 +137,18 @@ void add_facing(LayerCoverage::Facing& facing, std::size_t pixel, std::uint32_t 
 
 }  // namespace
 
+std::vector<PixelRange> joined(std::vector<PixelRange> ranges) {
+  std::ranges::sort(ranges);
+  std::size_t kept = 0;
+  for (const PixelRange& range : ranges)
+    if (kept > 0 && range[0] <= ranges[kept - 1][1])
+      ranges[kept - 1][1] = std::max(ranges[kept - 1][1], range[1]);
+    else
+      ranges[kept++] = range;
+  ranges.resize(kept);
+  return ranges;
+}
+
 struct CoverageSweep::Slice {
   Polygon polygon;
   std::uint32_t triangle = 0;
@@ -158,6 +170,7 @@ CoverageSweep::CoverageSweep(std::span<const Vec3> positions_m, std::span<const 
   for (auto* facing : {&layer_.up, &layer_.down})
     facing->area.resize(grid_.pixels()), facing->depth.resize(grid_.pixels()), facing->triangle.resize(grid_.pixels());
   below_.resize(grid_.pixels());
+  touched_.resize(static_cast<std::size_t>(grid_.height_px)), layer_.changed = touched_;
   if (by_height_.empty()) return;
   if (const double from = lowest(by_height_[0]); from < bottom_m) {
     fill(from, bottom_m);
@@ -226,46 +239,80 @@ void CoverageSweep::fill(double bottom_m, double top_m) {
   layer_.excess = excess.empty() ? 0 : std::ranges::max(excess);
 }
 
+// What surfaces touch starts from what is below; so does what they touched in the layer before.
+void CoverageSweep::begin_row(std::size_t first, std::span<const PixelRange> ranges) {
+  const double thickness = layer_.top_m - layer_.bottom_m;
+  for (const PixelRange& range : ranges)
+    for (std::size_t k = first + static_cast<std::size_t>(range[0]); k < first + static_cast<std::size_t>(range[1]);
+         ++k) {
+      layer_.share[k] = -thickness * below_[k];
+      layer_.up.area[k] = layer_.up.depth[k] = layer_.down.area[k] = layer_.down.depth[k] = 0;
+    }
+}
+
+double CoverageSweep::end_row(std::size_t first, std::span<const PixelRange> ranges) {
+  const double thickness = layer_.top_m - layer_.bottom_m;
+  double excess = 0;
+  for (const PixelRange& range : ranges)
+    for (std::size_t k = first + static_cast<std::size_t>(range[0]); k < first + static_cast<std::size_t>(range[1]);
+         ++k) {
+      double& share = layer_.share[k];
+      share /= thickness;
+      excess = std::max({excess, share - 1, -share});
+      share = std::clamp(share, 0.0, 1.0);
+    }
+  return excess;
+}
+
 // Returns the row's largest excess.
 double CoverageSweep::fill_row(std::span<const Slice> slices, std::span<const std::uint32_t> mine, int row) {
-  const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width_px);
-  double* const share = layer_.share.data() + first;
-  double* const below = below_.data() + first;
-  const double thickness = layer_.top_m - layer_.bottom_m;
-  for (int i = layer_.box.x_begin; i < layer_.box.x_end; ++i) share[i] = -thickness * below[i];
-  std::vector<float> most_up(static_cast<std::size_t>(grid_.width_px)), most_down(most_up);
-  for (auto* facing : {&layer_.up, &layer_.down})
-    for (int i = layer_.box.x_begin; i < layer_.box.x_end; ++i)
-      facing->area[first + static_cast<std::size_t>(i)] = facing->depth[first + static_cast<std::size_t>(i)] = 0;
+  const std::size_t index = static_cast<std::size_t>(row), first = index * static_cast<std::size_t>(grid_.width_px);
+  struct Piece {
+    Polygon polygon;
+    PixelRange columns{};
+    std::uint32_t slice = 0;
+  };
+  std::vector<Piece> pieces;
+  std::vector<PixelRange> now;
   Polygon rest, part, unused;
   for (const std::uint32_t k : mine) {
-    const Slice& slice = slices[k];
-    cut<&Corner::y>(slice.polygon, row, unused, rest);
+    cut<&Corner::y>(slices[k].polygon, row, unused, rest);
     cut<&Corner::y>(rest, row + 1, part, unused);
     if (part.size < 3) continue;
-    cut<&Corner::x>(part, slice.columns[0], unused, rest);
-    for (int i = slice.columns[0]; i < slice.columns[1] && rest.size >= 3; ++i) {
+    const PixelRange columns = covered(extent<&Corner::x>(part), grid_.width_px);
+    if (columns[0] >= columns[1]) continue;
+    pieces.push_back({part, columns, k}), now.push_back(columns);
+  }
+  now = joined(std::move(now));
+  std::vector<PixelRange> changed = touched_[index];
+  changed.insert(changed.end(), now.begin(), now.end());
+  changed = joined(std::move(changed));
+  begin_row(first, changed);
+  const double thickness = layer_.top_m - layer_.bottom_m;
+  thread_local std::vector<float> most_up, most_down;
+  most_up.resize(static_cast<std::size_t>(grid_.width_px)), most_down.resize(most_up.size());
+  for (const PixelRange& range : now)
+    for (auto* most : {&most_up, &most_down}) std::fill(most->begin() + range[0], most->begin() + range[1], 0.0f);
+  for (const Piece& piece : pieces) {
+    const Slice& slice = slices[piece.slice];
+    cut<&Corner::x>(piece.polygon, piece.columns[0], unused, rest);
+    for (int i = piece.columns[0]; i < piece.columns[1] && rest.size >= 3; ++i) {
       const Polygon whole = rest;
       cut<&Corner::x>(whole, i + 1, part, rest);
       if (part.size < 3) continue;
       const auto [area, height] =
           rays_.side > 0 ? by_rays(part, slice.plane, layer_.bottom_m, i, row, rays_) : integral(part, layer_.bottom_m);
-      share[i] += height - thickness * area;
-      below[i] += area;
-      const std::size_t pixel = first + static_cast<std::size_t>(i);
+      const std::size_t column = static_cast<std::size_t>(i), pixel = first + column;
+      layer_.share[pixel] += height - thickness * area;
+      below_[pixel] += area;
       if (area > 0)
-        add_facing(layer_.up, pixel, slice.triangle, area, height / thickness, most_up[static_cast<std::size_t>(i)]);
+        add_facing(layer_.up, pixel, slice.triangle, area, height / thickness, most_up[column]);
       else if (area < 0)
-        add_facing(layer_.down, pixel, slice.triangle, -area, height / thickness - area,
-                   most_down[static_cast<std::size_t>(i)]);
+        add_facing(layer_.down, pixel, slice.triangle, -area, height / thickness - area, most_down[column]);
     }
   }
-  double excess = 0;
-  for (int i = layer_.box.x_begin; i < layer_.box.x_end; ++i) {
-    share[i] /= thickness;
-    excess = std::max({excess, share[i] - 1, -share[i]});
-    share[i] = std::clamp(share[i], 0.0, 1.0);
-  }
+  const double excess = end_row(first, changed);
+  touched_[index] = std::move(now), layer_.changed[index] = std::move(changed);
   return excess;
 }
 

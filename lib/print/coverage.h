@@ -37,6 +37,10 @@ struct PixelBox {  // x_begin <= x < x_end
   bool empty() const { return x_begin >= x_end || y_begin >= y_end; }
 };
 
+using PixelRange = std::array<int, 2>;  // begin <= x < end
+
+std::vector<PixelRange> joined(std::vector<PixelRange> ranges);  // sorted, disjoint
+
 struct LayerCoverage {
   double bottom_m = 0, top_m = 0;
   PixelBox box{};               // outside of it all is 0
@@ -49,6 +53,9 @@ struct LayerCoverage {
     std::vector<std::uint32_t> triangle{};  // only where area is more than 0
   };
   Facing up{}, down{};
+  // Of every row the pixels that may differ from the layer before, as disjoint ranges in their order; all else stayed
+  // as it was, so that a layer costs what its surfaces do.
+  std::vector<std::vector<PixelRange>> changed{};
   double excess = 0;  // the most by which a voxel was more than full: above 1e-9 bodies overlap or the mesh is open
 };
 
@@ -73,15 +80,18 @@ class CoverageSweep {
   std::vector<Slice> slices(double bottom_m, double top_m) const;
   void fill(double bottom_m, double top_m);
   double fill_row(std::span<const Slice> slices, std::span<const std::uint32_t> mine, int row);
+  void begin_row(std::size_t first, std::span<const PixelRange> ranges);
+  double end_row(std::size_t first, std::span<const PixelRange> ranges);
 
   std::span<const Vec3> positions_m_;
   std::span<const std::array<std::uint32_t, 3>> triangles_;
   PixelGrid grid_;
   Rays rays_;
-  std::vector<std::uint32_t> by_height_;  // triangles, by their lowest corner
-  std::size_t admitted_ = 0;              // of them
-  std::vector<std::uint32_t> active_;     // that reach into the layer, ascending
-  std::vector<double> below_;             // signed area of what is below the layer, of the pixel
+  std::vector<std::uint32_t> by_height_;          // triangles, by their lowest corner
+  std::size_t admitted_ = 0;                      // of them
+  std::vector<std::uint32_t> active_;             // that reach into the layer, ascending
+  std::vector<double> below_;                     // signed area of what is below the layer, of the pixel
+  std::vector<std::vector<PixelRange>> touched_;  // of every row, by the layer's surfaces
   LayerCoverage layer_;
 };
 

@@ -71,7 +71,8 @@ struct Slicer::Sweep {
         top_m(bounds.high.z),
         box(part(bounds, whole)),
         grid(grid_of(box, whole)),
-        coverage(of.positions_m, of.triangles, grid, 0, rays) {}
+        coverage(of.positions_m, of.triangles, grid, 0, rays),
+        share(grid.pixels()) {}
 
   static PixelBox part(const Bounds& b, const PixelGrid& whole) {
     const auto pixel = [](double m, double corner, double size, int count, bool end) {
@@ -97,6 +98,12 @@ struct Slicer::Sweep {
         return found->second;
     return body.structure;
   }
+  double at(int x, int y) const {  // of the whole picture
+    if (x < box.x_begin || x >= box.x_end || y < box.y_begin || y >= box.y_end) return 0;
+    return static_cast<double>(
+        share[static_cast<std::size_t>(y - box.y_begin) * static_cast<std::size_t>(grid.width_px) +
+              static_cast<std::size_t>(x - box.x_begin)]);
+  }
   relief::SurfacePlace place(std::uint32_t triangle, Vec2 at, double z_m) const;
   double structure_over(int x, int y, std::uint32_t triangle, double z_m, int samples) const;
 
@@ -106,7 +113,9 @@ struct Slicer::Sweep {
   PixelBox box;
   PixelGrid grid;
   CoverageSweep coverage;
-  const LayerCoverage* layer = nullptr;
+  const LayerCoverage* layer = nullptr;  // null: the body has ended
+  bool ended = false;
+  std::vector<float> share;  // modulated
 };
 
 relief::SurfacePlace Slicer::Sweep::place(std::uint32_t triangle, Vec2 at, double z_m) const {
@@ -166,76 +175,126 @@ PixelBox Slicer::box() const {
   return all;
 }
 
-void Slicer::add(const Sweep& sweep, LayerPicture& layer) const {
+double Slicer::modulate(Sweep& sweep) const {
   const LayerCoverage& from = *sweep.layer;
-  const int wide = layer.box.x_end - layer.box.x_begin;
-  const double thickness_m = layer.top_m - layer.bottom_m, pixel_m2 = printer_.pixel_m.x * printer_.pixel_m.y;
+  const double thickness_m = from.top_m - from.bottom_m, pixel_m2 = printer_.pixel_m.x * printer_.pixel_m.y;
   const SlicedBody& body = sweep.body;
   std::vector<double> structured(static_cast<std::size_t>(sweep.grid.height_px));
+  const auto pixel = [&](std::size_t row, int x) {
+    const std::size_t k = row * static_cast<std::size_t>(sweep.grid.width_px) + static_cast<std::size_t>(x);
+    double share = from.share[k];
+    const auto take = [&](const LayerCoverage::Facing& facing, bool up) {
+      const double area = static_cast<double>(facing.area[k]), depth = static_cast<double>(facing.depth[k]);
+      if (!(area > 1e-6)) return;
+      const double inward = std::clamp(depth / area, 0.0, 1.0) * thickness_m;
+      const double kept = sweep.structure_over(x, static_cast<int>(row), facing.triangle[k],
+                                               up ? from.bottom_m + inward : from.top_m - inward, samples_);
+      share = std::max(0.0, share - std::clamp(depth, 0.0, share) * (1 - kept));
+      structured[row] += area * pixel_m2;
+    };
+    if (body.structured()) take(from.up, true);
+    if (body.structured() && body.structured_beneath) take(from.down, false);
+    sweep.share[k] = static_cast<float>(share);
+  };
   parallel_for(
-      0, static_cast<std::size_t>(sweep.grid.height_px),
+      0, structured.size(),
       [&](std::size_t row) {
-        const std::size_t first = row * static_cast<std::size_t>(sweep.grid.width_px);
-        float* const to = layer.share.data() + (row + static_cast<std::size_t>(sweep.box.y_begin - layer.box.y_begin)) *
-                                                   static_cast<std::size_t>(wide);
-        for (int x = from.box.x_begin; x < from.box.x_end; ++x) {
-          const std::size_t k = first + static_cast<std::size_t>(x);
-          double share = from.share[k];
-          const auto modulate = [&](const LayerCoverage::Facing& facing, bool up) {
-            const double area = static_cast<double>(facing.area[k]), depth = static_cast<double>(facing.depth[k]);
-            if (!(area > 1e-6)) return;
-            const double inward = std::clamp(depth / area, 0.0, 1.0) * thickness_m;
-            const double kept = sweep.structure_over(x, static_cast<int>(row), facing.triangle[k],
-                                                     up ? layer.bottom_m + inward : layer.top_m - inward, samples_);
-            share = std::max(0.0, share - std::clamp(depth, 0.0, share) * (1 - kept));
-            structured[row] += area * pixel_m2;
-          };
-          if (body.structured()) modulate(from.up, true);
-          if (body.structured() && body.structured_beneath) modulate(from.down, false);
-          float& target = to[x + sweep.box.x_begin - layer.box.x_begin];
-          target = static_cast<float>(std::min(1.0, static_cast<double>(target) + share));
-        }
+        for (const PixelRange& range : from.changed[row])
+          for (int x = range[0]; x < range[1]; ++x) pixel(row, x);
       },
       16);
-  for (const double area : structured) layer.structured_m2 += area;
-  layer.excess = std::max(layer.excess, from.excess);
+  double sum = 0;
+  for (const double area : structured) sum += area;
+  return sum;
 }
 
-bool Slicer::next(LayerPicture& layer) {
-  if (index_ >= layers_) return false;
-  layer = {.index = index_, .bottom_m = bottom_m_, .top_m = bottom_m_ + printer_.thickness_m(index_)};
-  for (const auto& sweep : sweeps_) {
-    sweep->layer = layer.bottom_m < sweep->top_m ? &sweep->coverage.next(layer.top_m) : nullptr;
-    if (sweep->layer == nullptr) continue;
-    layer.box = united(layer.box, sweep->box);
-  }
-  layer.share.assign(static_cast<std::size_t>(layer.box.x_end - layer.box.x_begin) *
-                         static_cast<std::size_t>(layer.box.y_end - layer.box.y_begin),
-                     0);
-  for (const auto& sweep : sweeps_)
-    if (sweep->layer != nullptr) add(*sweep, layer);
-  const double voxel_m3 = printer_.pixel_m.x * printer_.pixel_m.y * (layer.top_m - layer.bottom_m);
-  const double reach =
-      std::min(1.0, printer_.growth.reach_m(layer.top_m - layer.bottom_m) / (layer.top_m - layer.bottom_m));
-  for (const float share : layer.share) {
-    layer.solid_m3 += static_cast<double>(share) * voxel_m3;
-    layer.unreached_m3 += std::max(0.0, static_cast<double>(share) - reach) * voxel_m3;
-  }
-  ++index_, bottom_m_ = layer.top_m;
-  return true;
-}
-
-std::vector<std::uint8_t> greys_of(const LayerPicture& layer, const Printer& printer) {
-  const double thickness_m = layer.top_m - layer.bottom_m;
-  std::vector<std::uint8_t> greys(layer.share.size());
+// Sums over bodies where any of them changed.
+void Slicer::add_up() {
+  const std::size_t wide = static_cast<std::size_t>(layer_.box.x_end - layer_.box.x_begin);
+  std::vector<double> shares(layer_.changed.size()), unreached(shares);
   parallel_for(
-      0, greys.size(),
-      [&](std::size_t k) {
-        const double grey = printer.growth.grey_of_share(static_cast<double>(layer.share[k]), thickness_m);
-        greys[k] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(grey, 0.0, 1.0)));
+      0, layer_.changed.size(),
+      [&](std::size_t row) {
+        const int y = layer_.box.y_begin + static_cast<int>(row);
+        std::vector<PixelRange>& changed = layer_.changed[row];
+        changed.clear();
+        for (const auto& sweep : sweeps_) {
+          if (sweep->layer == nullptr || y < sweep->box.y_begin || y >= sweep->box.y_end) continue;
+          const int move = sweep->box.x_begin - layer_.box.x_begin;
+          for (const PixelRange& range : sweep->layer->changed[static_cast<std::size_t>(y - sweep->box.y_begin)])
+            changed.push_back({range[0] + move, range[1] + move});
+        }
+        if (sweeps_.size() > 1) changed = joined(std::move(changed));
+        for (const PixelRange& range : changed)
+          for (int x = range[0]; x < range[1]; ++x) {
+            double sum = 0;
+            for (const auto& sweep : sweeps_)
+              if (sweep->layer != nullptr) sum += sweep->at(layer_.box.x_begin + x, y);
+            float& share = layer_.share[row * wide + static_cast<std::size_t>(x)];
+            const auto now = static_cast<float>(std::min(1.0, sum));
+            const double before = static_cast<double>(share), after = static_cast<double>(now);
+            shares[row] += after - before;
+            unreached[row] += std::max(0.0, after - reach_) - std::max(0.0, before - reach_);
+            share = now;
+          }
       },
-      4096);
-  return greys;
+      16);
+  for (std::size_t row = 0; row < shares.size(); ++row) shares_ += shares[row], unreached_ += unreached[row];
+}
+
+const LayerPicture* Slicer::next() {
+  const bool first = layer_.share.empty();
+  if (!first) ++layer_.index;
+  if (layer_.index >= layers_) return nullptr;
+  layer_.bottom_m = layer_.top_m, layer_.top_m = layer_.bottom_m + printer_.thickness_m(layer_.index);
+  const double thickness_m = layer_.top_m - layer_.bottom_m;
+  if (first) {
+    layer_.box = box();
+    layer_.changed.resize(static_cast<std::size_t>(layer_.box.y_end - layer_.box.y_begin));
+    layer_.share.resize(layer_.changed.size() * static_cast<std::size_t>(layer_.box.x_end - layer_.box.x_begin));
+  }
+  layer_.structured_m2 = layer_.excess = 0;
+  for (const auto& sweep : sweeps_) {
+    if (sweep->ended) {
+      sweep->layer = nullptr;
+      continue;
+    }
+    sweep->ended = layer_.bottom_m >= sweep->top_m;  // this layer is the one in which its shares end
+    sweep->layer = &sweep->coverage.next(layer_.top_m);
+    layer_.structured_m2 += modulate(*sweep), layer_.excess = std::max(layer_.excess, sweep->layer->excess);
+  }
+  const double reach = std::min(1.0, printer_.growth.reach_m(thickness_m) / thickness_m);
+  if (reach != reach_) {  // another thickness
+    reach_ = reach, unreached_ = 0;
+    for (const float share : layer_.share) unreached_ += std::max(0.0, static_cast<double>(share) - reach_);
+  }
+  add_up();
+  const double voxel_m3 = printer_.pixel_m.x * printer_.pixel_m.y * thickness_m;
+  layer_.solid_m3 = shares_ * voxel_m3, layer_.unreached_m3 = unreached_ * voxel_m3;
+  return &layer_;
+}
+
+const std::vector<std::uint8_t>& GreyPicture::of(const LayerPicture& layer) {
+  const double thickness_m = layer.top_m - layer.bottom_m;
+  const std::size_t wide = static_cast<std::size_t>(layer.box.x_end - layer.box.x_begin);
+  const bool follows = layer.index == next_ && thickness_m == thickness_m_ && greys_.size() == layer.share.size();
+  greys_.resize(layer.share.size());
+  parallel_for(
+      0, layer.changed.size(),
+      [&](std::size_t row) {
+        const auto reckon = [&](PixelRange range) {
+          for (std::size_t k = row * wide + static_cast<std::size_t>(range[0]);
+               k < row * wide + static_cast<std::size_t>(range[1]); ++k) {
+            const double grey = printer_.growth.grey_of_share(static_cast<double>(layer.share[k]), thickness_m);
+            greys_[k] = static_cast<std::uint8_t>(255 * std::clamp(grey, 0.0, 1.0) + 0.5);
+          }
+        };
+        if (!follows) return reckon({0, static_cast<int>(wide)});
+        for (const PixelRange& range : layer.changed[row]) reckon(range);
+      },
+      16);
+  next_ = layer.index + 1, thickness_m_ = thickness_m;
+  return greys_;
 }
 
 }  // namespace gonio::print

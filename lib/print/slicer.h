@@ -46,14 +46,26 @@ void snap_to_layers(SlicedBody& body, const Printer& printer, double bottom_m, d
 struct LayerPicture {
   std::size_t index = 0;
   double bottom_m = 0, top_m = 0;
-  PixelBox box{};              // outside of it all is 0
+  PixelBox box{};              // that of all bodies, of every layer; outside of it all is 0
   std::vector<float> share{};  // of the box's voxels, row by row: how much of their height is to be solid
-  double solid_m3 = 0;         // what that adds up to
-  double structured_m2 = 0;    // area, seen from above, of the surfaces that were modulated
-  double unreached_m3 = 0;     // what white does not reach
-  double excess = 0;           // by which bodies overlap
+  std::vector<std::vector<PixelRange>> changed{};  // of the box's rows: what may differ from the layer before
+  double solid_m3 = 0;                             // what that adds up to
+  double structured_m2 = 0;                        // area, seen from above, of the surfaces that were modulated
+  double unreached_m3 = 0;                         // what white does not reach
+  double excess = 0;                               // by which bodies overlap
 };
-std::vector<std::uint8_t> greys_of(const LayerPicture& layer, const Printer& printer);  // of the box
+// Grey values of one layer after another; what did not change is not reckoned again.
+class GreyPicture {
+ public:
+  explicit GreyPicture(const Printer& printer) : printer_(printer) {}
+  const std::vector<std::uint8_t>& of(const LayerPicture& layer);  // of the box; until the next call
+
+ private:
+  Printer printer_;
+  std::vector<std::uint8_t> greys_;
+  std::size_t next_ = 0;  // layer
+  double thickness_m_ = 0;
+};
 
 class Slicer {
  public:
@@ -62,17 +74,20 @@ class Slicer {
   ~Slicer();
   std::size_t layers() const { return layers_; }  // up to the highest top
   PixelBox box() const;                           // of all bodies, within the picture
-  // The next layer; false after the last. The same bytes for any number of threads.
-  bool next(LayerPicture& layer);
+  // The next layer, until the next call; null after the last. The same bytes for any number of threads.
+  const LayerPicture* next();
 
  private:
   struct Sweep;
-  void add(const Sweep& sweep, LayerPicture& layer) const;
+  double modulate(Sweep& sweep) const;  // the body's own shares; area that was structured
+  void add_up();
   Printer printer_;
   int samples_;
   std::vector<std::unique_ptr<Sweep>> sweeps_;
-  std::size_t layers_ = 0, index_ = 0;
-  double bottom_m_ = 0;
+  std::size_t layers_ = 0;
+  LayerPicture layer_;
+  double shares_ = 0, unreached_ = 0;  // sums over the box
+  double reach_ = 0;                   // share that white reaches
 };
 
 }  // namespace gonio::print

@@ -14,6 +14,10 @@ namespace {
 
 constexpr double um = 1e-6;
 
+std::vector<std::uint8_t> greys_of(const LayerPicture& layer, const Printer& printer) {
+  return GreyPicture(printer).of(layer);
+}
+
 Printer small_printer() {
   Printer p;
   p.name = p.place = "p";
@@ -34,7 +38,7 @@ SlicedBody box(Vec3 low, Vec3 high) {
 std::vector<LayerPicture> sliced(const Printer& p, const std::vector<SlicedBody>& bodies) {
   std::vector<LayerPicture> all;
   Slicer slicer(p, bodies);
-  for (LayerPicture layer; slicer.next(layer);) all.push_back(layer);
+  while (const LayerPicture* layer = slicer.next()) all.push_back(*layer);
   EXPECT_EQ(all.size(), slicer.layers());
   return all;
 }
@@ -125,7 +129,7 @@ struct Compensated {
 Compensated compensated(const Printer& p, const std::vector<SlicedBody>& bodies, int iterations = 200) {
   Slicer slicer(p, bodies);
   Compensation compensation(
-      p, slicer.box(), [&](LayerPicture& l) { return slicer.next(l); }, iterations);
+      p, slicer.box(), [&] { return slicer.next(); }, iterations);
   Compensated out;
   Misfit before, after;
   for (CompensatedLayer l; compensation.next(l);) {
@@ -182,9 +186,9 @@ TEST(Compensation, MakesUpForOvercure) {
   };
   std::vector<std::vector<float>> plain;
   Slicer slicer(p, bodies);
-  for (LayerPicture l; slicer.next(l);) {
+  while (const LayerPicture* l = slicer.next()) {
     plain.emplace_back();
-    for (const std::uint8_t g : greys_of(l, p)) plain.back().push_back(g / 255.0f);
+    for (const std::uint8_t g : greys_of(*l, p)) plain.back().push_back(g / 255.0f);
   }
   const Compensated c = compensated(p, bodies);
   const double wanted = 180 * um, without = underside(plain, slicer.box()), with = underside(c.light, c.box);

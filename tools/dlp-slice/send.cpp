@@ -18,9 +18,10 @@ struct Drawn {  // grey values of a box, not yet turned into the display's pictu
   std::vector<std::uint8_t> greys;
 };
 
-// Rows from the top are from the largest y on; mirrored as the display wants it.
-std::vector<std::uint8_t> picture_of(const Drawn& drawn, const print::Job& job) {
-  std::vector<std::uint8_t> picture(static_cast<std::size_t>(job.width_px) * static_cast<std::size_t>(job.height_px));
+// Rows from the top are from the largest y on; mirrored as the display wants it. Until this thread's next call.
+const std::vector<std::uint8_t>& picture_of(const Drawn& drawn, const print::Job& job) {
+  thread_local std::vector<std::uint8_t> picture;
+  picture.assign(static_cast<std::size_t>(job.width_px) * static_cast<std::size_t>(job.height_px), 0);
   const int wide = drawn.box.x_end - drawn.box.x_begin;
   const bool flip_x = job.mirror_x.value_or(false), flip_y = job.mirror_y.value_or(false);
   for (int y = drawn.box.y_begin; y < drawn.box.y_end; ++y) {
@@ -133,10 +134,10 @@ void add_totals(Totals& totals, const print::LayerPicture& layer) {
 void compensate(Work& work, print::Slicer& slicer, Sender& sender) {
   print::Compensation compensation(
       work.printer, slicer.box(),
-      [&](print::LayerPicture& layer) {
-        if (!slicer.next(layer)) return false;
-        add_totals(work.totals, layer);
-        return true;
+      [&] {
+        const print::LayerPicture* const layer = slicer.next();
+        if (layer != nullptr) add_totals(work.totals, *layer);
+        return layer;
       },
       static_cast<int>(work.call.integer("iterations")));
   for (print::CompensatedLayer layer; compensation.next(layer);) {
@@ -158,9 +159,10 @@ void send_bodies(Work& work) {
   if (work.call.flag("compensate")) {
     compensate(work, slicer, sender);
   } else {
-    for (print::LayerPicture layer; slicer.next(layer);) {
-      add_totals(work.totals, layer);
-      sender.add({layer.index, layer.bottom_m, layer.top_m, layer.box, print::greys_of(layer, work.printer)});
+    print::GreyPicture greys(work.printer);
+    while (const print::LayerPicture* const layer = slicer.next()) {
+      add_totals(work.totals, *layer);
+      sender.add({layer->index, layer->bottom_m, layer->top_m, layer->box, greys.of(*layer)});
     }
   }
   sender.finish();
