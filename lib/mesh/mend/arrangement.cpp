@@ -4,6 +4,7 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("rounding-math")  // CGAL's interval arithmetic turns the processor's rounding
 #endif
+#define CGAL_NO_CDT_2_WARNING 1  // constraints that cross are few here
 #include "mesh/mend/arrangement.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -28,6 +29,7 @@ using Storage = CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_
 using Constrained = CGAL::Constrained_Delaunay_triangulation_2<Exact, Storage, CGAL::Exact_intersections_tag>;
 
 constexpr std::size_t most_pairs = std::size_t{1} << 22;
+constexpr int most_attempts = 64;
 
 Point exact(Vec3 p) {
   return {p.x, p.y, p.z};
@@ -71,18 +73,23 @@ class View {
   bool reversed_ = false;
 };
 
+Vec3 rounded(const Point& p) {
+  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+}
+
 class Vertices {
  public:
-  explicit Vertices(std::vector<Vec3>& positions) : positions_(positions) {}
+  Vertices(std::vector<Vec3>& positions, std::vector<Point>& points) : positions_(positions), points_(points) {}
   std::uint32_t of(const Point& p) {
     const auto [at, fresh] = numbers_.try_emplace(p, static_cast<std::uint32_t>(positions_.size()));
-    if (fresh) positions_.push_back({CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
+    if (fresh) positions_.push_back(rounded(p)), points_.push_back(p);
     return at->second;
   }
 
  private:
   std::map<Point, std::uint32_t> numbers_;
   std::vector<Vec3>& positions_;
+  std::vector<Point>& points_;
 };
 
 void mark(std::map<std::uint32_t, Marks3>& marks, std::uint32_t a, std::uint32_t b, const io::TriangleMesh& mesh) {
@@ -140,7 +147,87 @@ void cut(const io::TriangleMesh& mesh, std::uint32_t t, const Marks3& marks, Ver
   out.cut += count > 1;
 }
 
+// A ray as a segment to a place beyond the mesh, and the box that holds it.
+struct Ray {
+  Point from, to;
+  Vec3 low, high;
+};
+Ray ray_from(const io::TriangleMesh& mesh, const Point& from, int attempt) {
+  Vec3 low = mesh.positions_m[0], high = low;
+  for (const Vec3 p : mesh.positions_m) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 start = rounded(from);
+  const double size = norm(high - low);
+  // Nearly along x, so that its box is small; turned by odd angles, further ones where it met an edge.
+  const double u = std::fmod(0.0061803 * (attempt + 1), 0.01) - 0.004,
+               v = std::fmod(0.0041421 * (attempt + 1), 0.01) - 0.003;
+  const Vec3 end{high.x + size, start.y + u * size, start.z + v * size};
+  const Vec3 margin = Vec3{1, 1, 1} * (1e-6 * size);
+  return {from, exact(end), Vec3{std::min(start.x, end.x), std::min(start.y, end.y), std::min(start.z, end.z)} - margin,
+          Vec3{std::max(start.x, end.x), std::max(start.y, end.y), std::max(start.z, end.z)} + margin};
+}
+
+bool apart(const Ray& ray, Vec3 a, Vec3 b, Vec3 c) {
+  const auto beside = [](double low, double high, double p, double q, double r) {
+    return (p < low && q < low && r < low) || (p > high && q > high && r > high);
+  };
+  return beside(ray.low.x, ray.high.x, a.x, b.x, c.x) || beside(ray.low.y, ray.high.y, a.y, b.y, c.y) ||
+         beside(ray.low.z, ray.high.z, a.z, b.z, c.z);
+}
+
+// 1 where the ray leaves through the triangle's front, -1 through its back, 0 where it passes it by; `edge` is set
+// where it meets the rim or stays in the plane.
+int crossing(const Ray& ray, const Exact::Triangle_3& t, bool& edge) {
+  const CGAL::Orientation from = CGAL::orientation(t[0], t[1], t[2], ray.from),
+                          to = CGAL::orientation(t[0], t[1], t[2], ray.to);
+  if (from == to && from != CGAL::COPLANAR) return 0;
+  std::array<CGAL::Orientation, 3> sides{};
+  for (int c = 0; c < 3; ++c) sides[static_cast<std::size_t>(c)] = CGAL::orientation(ray.from, ray.to, t[c], t[c + 1]);
+  const bool left = std::ranges::count(sides, CGAL::POSITIVE) > 0,
+             right = std::ranges::count(sides, CGAL::NEGATIVE) > 0;
+  if (left && right) return 0;
+  if (from == CGAL::COPLANAR || to == CGAL::COPLANAR || std::ranges::count(sides, CGAL::COPLANAR) > 0) {
+    edge = true;
+    return 0;
+  }
+  return from == CGAL::NEGATIVE ? 1 : -1;
+}
+
 }  // namespace
+
+struct Arrangement::Exactly {
+  std::vector<Point> points;
+};
+
+std::array<int, 2> windings(const io::TriangleMesh& mesh, const Arrangement& arrangement, std::uint32_t triangle) {
+  const auto& [a, b, c] = arrangement.triangles[triangle];
+  const std::vector<Point>& points = arrangement.exactly->points;
+  const Point middle = CGAL::centroid(points[a], points[b], points[c]);
+  const std::uint32_t parent = arrangement.parent[triangle];
+  std::vector<std::uint32_t> on_it = arrangement.covering[triangle];
+  if (on_it.empty()) on_it.push_back(parent);
+  const Exact::Vector_3 normal = exact(mesh, parent).supporting_plane().orthogonal_vector();
+  int senses = 0;
+  for (const std::uint32_t t : on_it)
+    senses += exact(mesh, t).supporting_plane().orthogonal_vector() * normal > 0 ? 1 : -1;
+  for (int attempt = 0;; ++attempt) {
+    const Ray ray = ray_from(mesh, middle, attempt);
+    const Exact::Triangle_3 own = exact(mesh, parent);
+    const CGAL::Orientation ahead = CGAL::orientation(own[0], own[1], own[2], ray.to);
+    bool edge = ahead == CGAL::COPLANAR;
+    int count = 0;
+    for (std::uint32_t t = 0; t < mesh.triangles.size() && !edge; ++t) {
+      const auto& [i, j, k] = mesh.triangles[t];
+      if (apart(ray, mesh.positions_m[i], mesh.positions_m[j], mesh.positions_m[k])) continue;
+      if (std::ranges::binary_search(on_it, t)) continue;
+      count += crossing(ray, exact(mesh, t), edge);
+    }
+    if (edge && attempt < most_attempts) continue;
+    return ahead == CGAL::POSITIVE ? std::array{count, count + senses} : std::array{count - senses, count};
+  }
+}
 
 Arrangement arrange(const io::TriangleMesh& mesh) {
   Arrangement out;
@@ -150,7 +237,8 @@ Arrangement arrange(const io::TriangleMesh& mesh) {
   if (!out.complete) return out;
   std::map<std::uint32_t, Marks3> marks;
   for (const auto& [a, b] : pairs) mark(marks, a, b, mesh);
-  Vertices vertices(out.positions_m);
+  out.exactly = std::make_shared<Arrangement::Exactly>();
+  Vertices vertices(out.positions_m, out.exactly->points);
   // Only what is cut needs exact numbers; all else is told apart by its place as it is, which is exact, too.
   const std::vector<std::uint32_t> same = welded(mesh.positions_m);
   std::vector<std::uint32_t> number(mesh.positions_m.size(), nobody);
@@ -166,6 +254,7 @@ Arrangement arrange(const io::TriangleMesh& mesh) {
       if (number[v] == nobody) {
         number[v] = static_cast<std::uint32_t>(out.positions_m.size());
         out.positions_m.push_back(mesh.positions_m[v]);
+        out.exactly->points.push_back(exact(mesh.positions_m[v]));
       }
       corners[c] = number[v];
     }
