@@ -11,7 +11,8 @@
 //     `largest_hole_m`; each by less than half of what there is of its piece: a lone triangle is no body with a hole
 //   pieces that enclose nothing go
 //   outermost pieces are turned to face outwards; those within others become cavities where they face the other way
-//     than what they lie in, or where both face inwards; a body within a body's material stays one
+//     than what they lie in, or where both face inwards; a body within a body's material stays one;
+//     what meets another piece lies in none: it is taken for a body
 //   what overlaps is united (mesh/mend/unite.h): kept is the boundary of what is inside at all, which has a winding
 //     number above 0
 //

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "base/error.h"
 #include "broken_meshes.h"
 #include "data.h"
@@ -143,6 +145,38 @@ TEST(Mend, OverlappingBodiesAreUnited) {  // 24 pairs of boxes, aligned with eac
     EXPECT_NEAR(mended.volume_m3, volume, 1e-9);
     const auto [slices, excess] = sliced(mended.mesh);
     EXPECT_NEAR(slices, volume, 1e-9);
+    EXPECT_LT(excess, 1e-9);
+  }
+}
+
+// Sides, edges and corners in common wherever boxes meet: cells of the lattice that are in any of them are the truth.
+TEST(Mend, BoxesOfALatticeFillItsCells) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    io::TriangleMesh mesh;
+    std::set<std::array<int, 3>> cells;
+    for (std::uint64_t k = 0; k < 2 + seed % 6; ++k) {
+      std::array<int, 3> low{}, size{};
+      for (int c = 0; c < 3; ++c) low[c] = static_cast<int>(random() % 5), size[c] = 1 + static_cast<int>(random() % 3);
+      append(mesh, box({low[0] * 1.0, low[1] * 1.0, low[2] * 1.0}, {size[0] * 1.0, size[1] * 1.0, size[2] * 1.0},
+                       1 + static_cast<int>(random() % 2)));
+      for (int i = 0; i < size[0] * size[1] * size[2]; ++i)
+        cells.insert({low[0] + i % size[0], low[1] + i / size[0] % size[1], low[2] + i / size[0] / size[1]});
+    }
+    const auto volume = static_cast<double>(cells.size());
+    if (seed % 3 == 0) place(mesh, random);
+    if (seed % 4 == 0) unweld(mesh);
+    Mended mended;
+    try {
+      mended = mend(mesh, {}, "boxes");
+    } catch (const Error& error) {
+      ADD_FAILURE() << error.what();
+      continue;
+    }
+    EXPECT_NEAR(mended.volume_m3, volume, 1e-9 * volume);
+    const auto [slices, excess] = sliced(mended.mesh);
+    EXPECT_NEAR(slices, volume, 1e-8 * volume);
     EXPECT_LT(excess, 1e-9);
   }
 }

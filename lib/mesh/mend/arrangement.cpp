@@ -4,6 +4,7 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("rounding-math")  // CGAL's interval arithmetic turns the processor's rounding
 #endif
+#define CGAL_NO_CDT_2_WARNING 1  // constraints that cross are few here
 #include "mesh/mend/arrangement.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -28,6 +29,7 @@ using Storage = CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_
 using Constrained = CGAL::Constrained_Delaunay_triangulation_2<Exact, Storage, CGAL::Exact_intersections_tag>;
 
 constexpr std::size_t most_pairs = std::size_t{1} << 22;
+constexpr int most_attempts = 64;
 
 Point exact(Vec3 p) {
   return {p.x, p.y, p.z};
@@ -38,7 +40,7 @@ Exact::Triangle_3 exact(const io::TriangleMesh& mesh, std::uint32_t t) {
 }
 
 // What others leave on one triangle.
-struct Marks3 {
+struct TriangleMarks {
   std::vector<Point> points;
   std::vector<std::array<Point, 2>> segments;
   std::vector<std::uint32_t> coplanar;  // that lie in its plane and on it
@@ -71,21 +73,27 @@ class View {
   bool reversed_ = false;
 };
 
+Vec3 rounded(const Point& p) {
+  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+}
+
 class Vertices {
  public:
-  explicit Vertices(std::vector<Vec3>& positions) : positions_(positions) {}
+  Vertices(std::vector<Vec3>& positions, std::vector<Point>& points) : positions_(positions), points_(points) {}
   std::uint32_t of(const Point& p) {
     const auto [at, fresh] = numbers_.try_emplace(p, static_cast<std::uint32_t>(positions_.size()));
-    if (fresh) positions_.push_back({CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
+    if (fresh) positions_.push_back(rounded(p)), points_.push_back(p);
     return at->second;
   }
 
  private:
   std::map<Point, std::uint32_t> numbers_;
   std::vector<Vec3>& positions_;
+  std::vector<Point>& points_;
 };
 
-void mark(std::map<std::uint32_t, Marks3>& marks, std::uint32_t a, std::uint32_t b, const io::TriangleMesh& mesh) {
+void mark(std::map<std::uint32_t, TriangleMarks>& marks, std::uint32_t a, std::uint32_t b,
+          const io::TriangleMesh& mesh) {
   const auto common = CGAL::intersection(exact(mesh, a), exact(mesh, b));
   if (!common) return;
   std::vector<Point> outline;
@@ -94,7 +102,7 @@ void mark(std::map<std::uint32_t, Marks3>& marks, std::uint32_t a, std::uint32_t
   if (const Exact::Triangle_3* t = boost::get<Exact::Triangle_3>(&*common)) outline = {(*t)[0], (*t)[1], (*t)[2]};
   if (const std::vector<Point>* p = boost::get<std::vector<Point>>(&*common)) outline = *p;
   for (const std::uint32_t mine : {a, b}) {
-    Marks3& own = marks[mine];
+    TriangleMarks& own = marks[mine];
     if (outline.size() == 1) own.points.push_back(outline[0]);
     if (outline.size() == 2) own.segments.push_back({outline[0], outline[1]});
     for (std::size_t i = 0; outline.size() > 2 && i < outline.size(); ++i)
@@ -119,7 +127,8 @@ std::vector<std::uint32_t> covering(const io::TriangleMesh& mesh, const View& vi
   return found;
 }
 
-void cut(const io::TriangleMesh& mesh, std::uint32_t t, const Marks3& marks, Vertices& vertices, Arrangement& out) {
+void cut(const io::TriangleMesh& mesh, std::uint32_t t, const TriangleMarks& marks, Vertices& vertices,
+         Arrangement& out) {
   const Exact::Triangle_3 whole = exact(mesh, t);
   const View view(whole);
   Constrained parts;
@@ -140,7 +149,152 @@ void cut(const io::TriangleMesh& mesh, std::uint32_t t, const Marks3& marks, Ver
   out.cut += count > 1;
 }
 
+struct Box {
+  Vec3 low{}, high{};
+};
+// A ray as a segment to a place beyond the mesh, and the box that holds it.
+struct Ray {
+  Point from, to;
+  Box box;
+};
+Box box_of(const io::TriangleMesh& mesh) {
+  Box box{mesh.positions_m[0], mesh.positions_m[0]};
+  for (const Vec3 p : mesh.positions_m) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
+// Nearly along x, so that its box is small; turned by odd angles, further ones where it met an edge.
+Ray ray_from(const Box& mesh, const Point& from, int attempt) {
+  const double size = norm(mesh.high - mesh.low);
+  const Vec3 start = rounded(from);
+  const double u = std::fmod(0.0061803 * (attempt + 1), 0.01) - 0.004,
+               v = std::fmod(0.0041421 * (attempt + 1), 0.01) - 0.003;
+  const Vec3 end{mesh.high.x + size, start.y + u * size, start.z + v * size};
+  const Vec3 margin = Vec3{1, 1, 1} * (1e-6 * size);
+  return {from,
+          exact(end),
+          {Vec3{start.x, std::min(start.y, end.y), std::min(start.z, end.z)} - margin,
+           Vec3{end.x, std::max(start.y, end.y), std::max(start.z, end.z)} + margin}};
+}
+
+bool apart(const Ray& ray, Vec3 a, Vec3 b, Vec3 c) {
+  const auto beside = [](double low, double high, double p, double q, double r) {
+    return (p < low && q < low && r < low) || (p > high && q > high && r > high);
+  };
+  return beside(ray.box.low.x, ray.box.high.x, a.x, b.x, c.x) || beside(ray.box.low.y, ray.box.high.y, a.y, b.y, c.y) ||
+         beside(ray.box.low.z, ray.box.high.z, a.z, b.z, c.z);
+}
+
+// 1 where the ray leaves through the triangle's front, -1 through its back, 0 where it passes it by; `edge` is set
+// where it meets the rim or stays in the plane.
+int crossing(const Ray& ray, const Exact::Triangle_3& t, bool& edge) {
+  const CGAL::Orientation from = CGAL::orientation(t[0], t[1], t[2], ray.from),
+                          to = CGAL::orientation(t[0], t[1], t[2], ray.to);
+  if (from == to && from != CGAL::COPLANAR) return 0;
+  std::array<CGAL::Orientation, 3> sides{};
+  for (int c = 0; c < 3; ++c) sides[static_cast<std::size_t>(c)] = CGAL::orientation(ray.from, ray.to, t[c], t[c + 1]);
+  const bool left = std::ranges::count(sides, CGAL::POSITIVE) > 0,
+             right = std::ranges::count(sides, CGAL::NEGATIVE) > 0;
+  if (left && right) return 0;
+  if (from == CGAL::COPLANAR || to == CGAL::COPLANAR || std::ranges::count(sides, CGAL::COPLANAR) > 0) {
+    edge = true;
+    return 0;
+  }
+  return from == CGAL::NEGATIVE ? 1 : -1;
+}
+
+// Triangles by where they are seen along x: cells of a grid, and those that are large.
+class SeenAlongX {
+ public:
+  explicit SeenAlongX(const io::TriangleMesh& mesh) : box_(box_of(mesh)) {
+    cells_a_side_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(mesh.triangles.size())) / 2), 1, 512);
+    cells_.resize(static_cast<std::size_t>(cells_a_side_) * static_cast<std::size_t>(cells_a_side_));
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Vec3 a = mesh.positions_m[mesh.triangles[t][0]], b = mesh.positions_m[mesh.triangles[t][1]],
+                 c = mesh.positions_m[mesh.triangles[t][2]];
+      const Cells own = cells({{0, std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+                               {0, std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}});
+      if (own.count() > most_cells)
+        large_.push_back(t);
+      else
+        for_each(own, [&](std::vector<std::uint32_t>& cell) { cell.push_back(t); });
+    }
+  }
+  const Box& box() const { return box_; }
+  // All that the ray may meet, each once, and others.
+  std::vector<std::uint32_t> along(const Ray& ray) {
+    std::vector<std::uint32_t> found = large_;
+    for_each(cells(ray.box),
+             [&](const std::vector<std::uint32_t>& cell) { found.insert(found.end(), cell.begin(), cell.end()); });
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+ private:
+  static constexpr int most_cells = 64;
+  struct Cells {
+    int y0, y1, z0, z1;  // all within
+    int count() const { return (y1 - y0 + 1) * (z1 - z0 + 1); }
+  };
+  int cell(double p, double low, double high) const {
+    const double at = high > low ? (p - low) / (high - low) * cells_a_side_ : 0;
+    return std::clamp(static_cast<int>(at), 0, cells_a_side_ - 1);
+  }
+  Cells cells(const Box& b) const {
+    return {cell(b.low.y, box_.low.y, box_.high.y), cell(b.high.y, box_.low.y, box_.high.y),
+            cell(b.low.z, box_.low.z, box_.high.z), cell(b.high.z, box_.low.z, box_.high.z)};
+  }
+  template <class Body>
+  void for_each(const Cells& some, const Body& body) {
+    for (int y = some.y0; y <= some.y1; ++y)
+      for (int z = some.z0; z <= some.z1; ++z) body(cells_[static_cast<std::size_t>(y * cells_a_side_ + z)]);
+  }
+
+  Box box_;
+  int cells_a_side_ = 1;
+  std::vector<std::vector<std::uint32_t>> cells_;
+  std::vector<std::uint32_t> large_;
+};
+
 }  // namespace
+
+struct Arrangement::Exactly {
+  explicit Exactly(const io::TriangleMesh& mesh) : seen(mesh) {}
+  std::vector<Point> points{};
+  SeenAlongX seen;
+};
+
+std::array<int, 2> windings(const io::TriangleMesh& mesh, const Arrangement& arrangement, std::uint32_t triangle) {
+  const auto& [a, b, c] = arrangement.triangles[triangle];
+  const std::vector<Point>& points = arrangement.exactly->points;
+  const Point middle = CGAL::centroid(points[a], points[b], points[c]);
+  const std::uint32_t parent = arrangement.parent[triangle];
+  std::vector<std::uint32_t> on_it = arrangement.covering[triangle];
+  if (on_it.empty()) on_it.push_back(parent);
+  const Exact::Vector_3 normal = exact(mesh, parent).supporting_plane().orthogonal_vector();
+  int senses = 0;
+  for (const std::uint32_t t : on_it)
+    senses += exact(mesh, t).supporting_plane().orthogonal_vector() * normal > 0 ? 1 : -1;
+  for (int attempt = 0;; ++attempt) {
+    const Ray ray = ray_from(arrangement.exactly->seen.box(), middle, attempt);
+    const Exact::Triangle_3 own = exact(mesh, parent);
+    const CGAL::Orientation ahead = CGAL::orientation(own[0], own[1], own[2], ray.to);
+    bool edge = ahead == CGAL::COPLANAR;
+    int count = 0;
+    for (const std::uint32_t t : arrangement.exactly->seen.along(ray)) {
+      const auto& [i, j, k] = mesh.triangles[t];
+      if (apart(ray, mesh.positions_m[i], mesh.positions_m[j], mesh.positions_m[k])) continue;
+      if (std::ranges::binary_search(on_it, t)) continue;
+      count += crossing(ray, exact(mesh, t), edge);
+    }
+    if (edge && attempt < most_attempts) continue;
+    return ahead == CGAL::POSITIVE ? std::array{count, count + senses} : std::array{count - senses, count};
+  }
+}
 
 Arrangement arrange(const io::TriangleMesh& mesh) {
   Arrangement out;
@@ -148,9 +302,10 @@ Arrangement arrange(const io::TriangleMesh& mesh) {
   out.crossings = pairs.size();
   out.complete = pairs.size() < most_pairs;
   if (!out.complete) return out;
-  std::map<std::uint32_t, Marks3> marks;
+  std::map<std::uint32_t, TriangleMarks> marks;
   for (const auto& [a, b] : pairs) mark(marks, a, b, mesh);
-  Vertices vertices(out.positions_m);
+  out.exactly = std::make_shared<Arrangement::Exactly>(mesh);
+  Vertices vertices(out.positions_m, out.exactly->points);
   // Only what is cut needs exact numbers; all else is told apart by its place as it is, which is exact, too.
   const std::vector<std::uint32_t> same = welded(mesh.positions_m);
   std::vector<std::uint32_t> number(mesh.positions_m.size(), nobody);
@@ -166,6 +321,7 @@ Arrangement arrange(const io::TriangleMesh& mesh) {
       if (number[v] == nobody) {
         number[v] = static_cast<std::uint32_t>(out.positions_m.size());
         out.positions_m.push_back(mesh.positions_m[v]);
+        out.exactly->points.push_back(exact(mesh.positions_m[v]));
       }
       corners[c] = number[v];
     }

@@ -37,7 +37,7 @@ std::vector<MeshEdge> round_the_edge(const io::TriangleMesh& mesh, std::span<con
   }
   std::vector<MeshEdge> order;
   for (std::size_t i = 0, end = 0; i < placed.size(); i = end) {
-    for (end = i; end < placed.size() && placed[end].first <= placed[i].first + same_angle_rad;) ++end;
+    for (end = i + 1; end < placed.size() && placed[end].first <= placed[i].first + same_angle_rad;) ++end;
     for (const bool forward : {true, false})
       for (std::size_t k = i; k < end; ++k)
         if (placed[k].second.forward == forward) order.push_back(placed[k].second);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -36,8 +38,9 @@ std::size_t needle_edge(const io::TriangleMesh& mesh, const Corners& t) {
 struct Copies {
   std::vector<std::uint32_t> faces;
   int forward = 0, backward = 0;
-  bool sheet() const { return forward == backward; }  // on its own reverse
+  std::size_t net() const { return static_cast<std::size_t>(std::abs(forward - backward)); }
 };
+using CopyGroups = std::vector<std::pair<Corners, Copies>>;
 
 // The same corners from the lowest on; whether they are passed in ascending order.
 std::pair<Corners, bool> in_order(Corners t) {
@@ -47,29 +50,40 @@ std::pair<Corners, bool> in_order(Corners t) {
   return {t, forward};
 }
 
-// Sheets that hang together over edges where nothing else is. One on which others stand, or that is alone, has no part
-// in what others enclose; all other triangles on their own reverse stand in for a triangle of a surface.
-std::vector<bool> sheets_in_vain(const std::vector<std::pair<Corners, Copies>>& groups) {
+// How many copies of each triangle stay. Triangles with as many copies that hang together over edges where nothing else
+// is are one patch, and what is beside it decides: one other triangle at its border makes it part of a surface, two the
+// common side of two bodies. There a patch on its own reverse goes, and one that all copies face alike stays twice.
+std::vector<std::size_t> copies_to_keep(const CopyGroups& groups) {
   std::vector<Corners> different;
   for (const auto& group : groups) different.push_back(group.first);
-  const auto is_sheet = [&](const MeshEdge& e) { return groups[e.face].second.sheet(); };
+  const auto copies = [&](const MeshEdge& e) -> const Copies& { return groups[e.face].second; };
   const std::vector<MeshEdge> edges = edges_of(different);
-  UnionFind sheets(groups.size());
+  UnionFind patches(groups.size());
   for_each_edge(edges, [&](std::span<const MeshEdge> edge) {
-    if (edge.size() == 2 && is_sheet(edge[0]) && is_sheet(edge[1])) sheets.join(edge[0].face, edge[1].face);
+    if (edge.size() == 2 && copies(edge[0]).faces.size() == copies(edge[1]).faces.size() &&
+        copies(edge[0]).net() == copies(edge[1]).net())
+      patches.join(edge[0].face, edge[1].face);
   });
-  std::vector<bool> crowded(groups.size(), false), alone(groups.size(), true), in_vain(groups.size(), false);
+  constexpr std::size_t no_border = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> beside(groups.size(), no_border), keep(groups.size(), 1);
   for_each_edge(edges, [&](std::span<const MeshEdge> edge) {
-    for (const MeshEdge& e : edge) {
-      if (edge.size() > 2) crowded[sheets.group(e.face)] = true;
-      if (edge.size() == 2 && is_sheet(edge[0]) != is_sheet(edge[1])) alone[sheets.group(e.face)] = false;
+    if (edge.size() == 2 && patches.group(edge[0].face) == patches.group(edge[1].face)) return;
+    for (const MeshEdge& mine : edge) {
+      std::size_t others = 0;
+      const std::uint32_t patch = patches.group(mine.face);
+      for (const MeshEdge& e : edge) others += patches.group(e.face) == patch ? 0 : copies(e).faces.size();
+      if (others > 0) beside[patch] = std::min(beside[patch], others);  // 0: a hole, which says nothing
     }
   });
   for (std::uint32_t g = 0; g < groups.size(); ++g) {
-    const std::uint32_t sheet = sheets.group(g);
-    in_vain[g] = groups[g].second.sheet() && (crowded[sheet] || alone[sheet]);
+    const std::size_t others = beside[patches.group(g)], net = groups[g].second.net();
+    if (groups[g].second.faces.size() == 1) continue;
+    if (net == 0)
+      keep[g] = others == no_border ? 0 : others % 2;
+    else if (others != no_border)
+      keep[g] = std::max<std::size_t>(1, std::min(net, others) - (std::min(net, others) - others) % 2);
   }
-  return in_vain;
+  return keep;
 }
 
 void drop_copies(io::TriangleMesh& mesh, CleanedFaces& report) {
@@ -81,19 +95,19 @@ void drop_copies(io::TriangleMesh& mesh, CleanedFaces& report) {
     ++(forward ? copies.forward : copies.backward);
   }
   if (found.size() == mesh.triangles.size()) return;
-  const std::vector<std::pair<Corners, Copies>> groups(found.begin(), found.end());
-  const std::vector<bool> in_vain = sheets_in_vain(groups);
+  const CopyGroups groups(found.begin(), found.end());
+  const std::vector<std::size_t> keep = copies_to_keep(groups);
   std::vector<char> gone(mesh.triangles.size(), 0);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const Copies& copies = groups[g].second;
     const bool wanted_forward = copies.forward >= copies.backward;
-    bool kept = false;
+    std::size_t kept = 0;
     for (const std::uint32_t f : copies.faces) {
-      const bool keep = !in_vain[g] && !kept && in_order(mesh.triangles[f]).second == wanted_forward;
-      kept = kept || keep;
-      gone[f] = keep ? 0 : 1;
+      const bool stays = kept < keep[g] && in_order(mesh.triangles[f]).second == wanted_forward;
+      kept += stays;
+      gone[f] = stays ? 0 : 1;
     }
-    (in_vain[g] ? report.cancelled : report.doubled) += copies.faces.size() - (in_vain[g] ? 0 : 1);
+    (keep[g] == 0 ? report.cancelled : report.doubled) += copies.faces.size() - kept;
   }
   std::size_t left = 0;
   for (std::size_t f = 0; f < gone.size(); ++f)
@@ -139,15 +153,23 @@ std::size_t turn_needles(io::TriangleMesh& mesh) {
   return turned;
 }
 
+Merged merge_places(io::TriangleMesh& mesh) {
+  Merged merged;
+  drop_unused(mesh);
+  const std::vector<std::uint32_t> same = welded(mesh.positions_m);
+  for (std::uint32_t v = 0; v < same.size(); ++v) merged.vertices += same[v] != v;
+  for (Corners& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = same[v];
+  merged.collapsed = std::erase_if(mesh.triangles, is_collapsed);
+  drop_unused(mesh);
+  return merged;
+}
+
 CleanedFaces clean_faces(io::TriangleMesh& mesh) {
   CleanedFaces report;
   mesh.normals.clear(), mesh.texture.clear(), mesh.properties.clear(), mesh.labels.clear();
-  drop_unused(mesh);
-  const std::vector<std::uint32_t> same = welded(mesh.positions_m);
-  for (std::uint32_t v = 0; v < same.size(); ++v) report.merged_vertices += same[v] != v;
-  for (Corners& t : mesh.triangles)
-    for (std::uint32_t& v : t) v = same[v];
-  report.collapsed = std::erase_if(mesh.triangles, is_collapsed);
+  const Merged merged = merge_places(mesh);
+  report.merged_vertices = merged.vertices, report.collapsed = merged.collapsed;
   report.needles = turn_needles(mesh);
   drop_copies(mesh, report);
   drop_unused(mesh);

@@ -16,7 +16,13 @@ struct CleanedFaces {
 // Positions and triangles alone are kept.
 CleanedFaces clean_faces(io::TriangleMesh& mesh);
 
-// The needles of that alone.
+// Corners at one place become one vertex, and triangles with two corners there go; how many did.
+struct Merged {
+  std::size_t vertices = 0, collapsed = 0;
+};
+Merged merge_places(io::TriangleMesh& mesh);
+
+// The needles alone.
 std::size_t turn_needles(io::TriangleMesh& mesh);
 
 // Vertices at the rims of holes that lie within `reach_m` of each other, and not along one edge, become one: a rim that

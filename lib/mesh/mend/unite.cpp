@@ -1,18 +1,13 @@
 // See unite.h. Parts that hang together over edges of two triangles have one winding number before them and one behind
-// them. At the middle of one of their triangles all other triangles fill a solid angle of 4 pi w; the n triangles that
-// cover it, each counted with its sense, add n / 2 behind and take n / 2 away before.
+// them.
 #include "mesh/mend/unite.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
-#include "base/parallel.h"
 #include "base/union_find.h"
-#include "mesh/inside.h"
 #include "mesh/mend/arrangement.h"
 #include "mesh/mend/edges.h"
-#include "mesh/unused_vertices.h"
+#include "mesh/mend/faces.h"
 
 namespace gonio::mesh {
 namespace {
@@ -41,25 +36,13 @@ std::vector<std::uint32_t> samples_of(const Arrangement& parts) {
   return samples;
 }
 
-Fate fate_of(const Mesh& whole, const Arrangement& parts, std::uint32_t sample) {
-  const auto& [a, b, c] = parts.triangles[sample];
-  const Vec3 centre = (parts.positions_m[a] + parts.positions_m[b] + parts.positions_m[c]) / 3;
-  const std::uint32_t parent = parts.parent[sample];
-  std::vector<std::uint32_t> covering = parts.covering[sample];
-  if (covering.empty()) covering.push_back(parent);
-  if (covering[0] != parent) return Fate::goes;  // the first of those that lie on each other speaks for all
-  const Vec3 normal = doubled_normal(whole.positions_m, whole.triangles[parent]);
-  double senses = 0;
-  Mesh other;  // the covering ones, to be taken off again
-  other.positions_m = whole.positions_m;
-  for (const std::uint32_t t : covering) {
-    senses += dot(normal, doubled_normal(whole.positions_m, whole.triangles[t])) > 0 ? 1 : -1;
-    other.triangles.push_back(whole.triangles[t]);
-  }
-  const double rest = winding_number(whole, centre) - winding_number(other, centre);
-  const bool before = std::round(rest - senses / 2) > 0, behind = std::round(rest + senses / 2) > 0;
-  if (before == behind) return Fate::goes;
-  return behind ? Fate::stays : Fate::turns;
+Fate fate_of(const io::TriangleMesh& whole, const Arrangement& parts, std::uint32_t sample) {
+  const std::vector<std::uint32_t>& covering = parts.covering[sample];
+  // The first of those that lie on each other speaks for all.
+  if (!covering.empty() && covering[0] != parts.parent[sample]) return Fate::goes;
+  const auto [before, behind] = windings(whole, parts, sample);
+  if ((before > 0) == (behind > 0)) return Fate::goes;
+  return behind > 0 ? Fate::stays : Fate::turns;
 }
 
 }  // namespace
@@ -77,10 +60,8 @@ United unite(io::TriangleMesh& mesh) {
   std::vector<std::uint32_t> asked = samples;
   std::sort(asked.begin(), asked.end());
   asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
-  Mesh whole;
-  whole.positions_m = mesh.positions_m, whole.triangles = mesh.triangles;
   std::vector<Fate> fates(parts.triangles.size(), Fate::goes);
-  parallel_for(0, asked.size(), [&](std::size_t i) { fates[asked[i]] = fate_of(whole, parts, asked[i]); });
+  for (const std::uint32_t sample : asked) fates[sample] = fate_of(mesh, parts, sample);
   std::vector<char> seen(pieces, 0);
   mesh.positions_m = std::move(parts.positions_m);
   mesh.triangles.clear();
@@ -93,7 +74,7 @@ United unite(io::TriangleMesh& mesh) {
     mesh.triangles.push_back(t);
   }
   united.within = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 0));
-  drop_unused(mesh);
+  merge_places(mesh);  // exact places that are one when rounded
   return united;
 }
 
