@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace gonio::print {
 namespace {
 
@@ -45,11 +47,12 @@ struct Compensation::Voxels {
   double thickness_m() const { return top_m - bottom_m; }
 };
 
-Compensation::Compensation(const Printer& printer, const PixelBox& box, Source source, int iterations)
+Compensation::Compensation(const Printer& printer, const PixelBox& box, Source source, int iterations, Known known)
     : printer_(printer),
       box_(widened(box, printer)),
       source_(std::move(source)),
       iterations_(iterations),
+      known_(std::move(known)),
       spread_(printer.bleed, printer.pixel_m, box_.x_end - box_.x_begin, box_.y_end - box_.y_begin),
       reach_(reach_of(printer)) {}
 Compensation::~Compensation() = default;
@@ -97,10 +100,12 @@ bool Compensation::draw() {
 
 Compensation::Lights Compensation::total(const Lights& own) const {
   Lights all(own.size());
-  for (std::size_t k = own.size(); k-- > 0;) {
+  parallel_for(0, own.size(), [&](std::size_t k) {
     all[k].resize(own[k].size());
     spread_(own[k], all[k]);
-    if (k + 1 == own.size() || !printer_.overcure_m) continue;
+  });
+  if (!printer_.overcure_m) return all;
+  for (std::size_t k = own.size() - 1; k-- > 0;) {
     const auto through = static_cast<float>(kept(k + 1));
     for (std::size_t i = 0; i < all[k].size(); ++i) all[k][i] += through * all[k + 1][i];
   }
@@ -122,18 +127,16 @@ Compensation::Lights Compensation::misfit(const Lights& total) const {
 }
 
 Compensation::Lights Compensation::slopes(const Lights& misfit) const {
-  Lights all(misfit.size());
-  std::vector<float> carried;
-  for (std::size_t k = 0; k < misfit.size(); ++k) {
-    if (k == 0 || !printer_.overcure_m)
-      carried = misfit[k];
-    else {
-      const auto through = static_cast<float>(kept(k));
-      for (std::size_t i = 0; i < carried.size(); ++i) carried[i] = misfit[k][i] + through * carried[i];
-    }
-    all[k].resize(carried.size());
-    spread_.backwards(carried, all[k]);
+  Lights carried = misfit;
+  for (std::size_t k = 1; k < carried.size() && printer_.overcure_m; ++k) {
+    const auto through = static_cast<float>(kept(k));
+    for (std::size_t i = 0; i < carried[k].size(); ++i) carried[k][i] += through * carried[k - 1][i];
   }
+  Lights all(carried.size());
+  parallel_for(0, all.size(), [&](std::size_t k) {
+    all[k].resize(carried[k].size());
+    spread_.backwards(carried[k], all[k]);
+  });
   return all;
 }
 
@@ -151,7 +154,22 @@ void Compensation::judge(Voxels& v, const std::vector<float>& without, const std
   }
 }
 
+// Of the block up to `last`: have all its layers been found before?
+bool Compensation::take_known(std::size_t last) {
+  if (!known_) return false;
+  for (std::size_t k = sent_; k < last; ++k) {
+    const std::vector<std::uint8_t> greys = known_(window_[k].index);
+    if (greys.size() != window_[k].light.size()) return false;
+    for (std::size_t i = 0; i < greys.size(); ++i) window_[k].light[i] = static_cast<float>(greys[i]) / 255;
+  }
+  return true;
+}
+
 void Compensation::solve() {
+  const std::size_t last = std::min(window_.size(), sent_ + block);
+  // Those that follow begin anew with every block, so that a block depends on nothing but what was sent.
+  for (std::size_t k = sent_; k < window_.size(); ++k) window_[k].light = window_[k].plain;
+  const bool known = take_known(last);
   Lights x, plain;
   float heaviest = 1;
   double carried = 0;
@@ -160,13 +178,12 @@ void Compensation::solve() {
     heaviest = std::max(heaviest, std::ranges::max(window_[k].weight));
     carried = std::max(carried, kept(k));
   }
-  const std::size_t last = std::min(window_.size(), sent_ + block);
   const Lights without = total(plain);
   // The largest slope of the slopes: |K| <= 1, and what is carried down is a geometric series.
   const auto step = static_cast<float>((1 - carried) * (1 - carried) / static_cast<double>(heaviest));
   Lights y = x;
   double momentum = 1;
-  for (int iteration = 0; iteration < iterations_; ++iteration) {
+  for (int iteration = 0; iteration < (known ? 0 : iterations_); ++iteration) {
     const Lights slope = slopes(misfit(total(y)));
     const double next = (1 + std::sqrt(1 + 4 * momentum * momentum)) / 2;
     double turns = 0;

@@ -40,8 +40,11 @@ struct CompensatedLayer {
 class Compensation {
  public:
   using Source = std::function<const LayerPicture*()>;  // the next layer from the platform on; null after the last
-  // Every layer's box lies within `box`, about which so much is added as light is to be kept away from.
-  Compensation(const Printer& printer, const PixelBox& box, Source source, int iterations = 60);
+  // What an earlier call found for a layer, of the box that CompensatedLayer has; empty: nothing.
+  using Known = std::function<std::vector<std::uint8_t>(std::size_t index)>;
+  // Every layer's box lies within `box`, about which so much is added as light is to be kept away from. Blocks all of
+  // whose layers are known are not solved again: what follows is what it would have been.
+  Compensation(const Printer& printer, const PixelBox& box, Source source, int iterations = 60, Known known = {});
   ~Compensation();
   bool next(CompensatedLayer& layer);
 
@@ -50,6 +53,7 @@ class Compensation {
   using Lights = std::vector<std::vector<float>>;
   bool draw();  // one more layer into the window
   void solve();
+  bool take_known(std::size_t last);
   Lights total(const Lights& own) const;      // G of the window's layers
   Lights misfit(const Lights& total) const;   // w (G - G*), where it counts
   Lights slopes(const Lights& misfit) const;  // of half the sum, by the lights
@@ -59,6 +63,7 @@ class Compensation {
   PixelBox box_;
   Source source_;
   int iterations_;
+  Known known_;
   Spread spread_;
   std::size_t reach_ = 0;  // layers that a layer's light counts in, below it
   bool ended_ = false;

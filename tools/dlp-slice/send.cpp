@@ -2,10 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "io/grey.h"
+#include "io/png_grey.h"
 #include "tools/dlp-slice/work.h"
 
 namespace gonio::tools::dlp_slice {
@@ -131,7 +135,51 @@ void add_totals(Totals& totals, const print::LayerPicture& layer) {
   totals.unreached_m3 += layer.unreached_m3, totals.excess = std::max(totals.excess, layer.excess);
 }
 
+// Compensated layers of a call that was interrupted: greys as PNG in a folder beside the archive, under a key of all
+// that they depend on. The folder goes when the archive is whole.
+class Kept {
+ public:
+  Kept(const Work& work, const print::PixelBox& box) : folder_(work.archive.string() + ".compensated") {
+    const std::string key = key_of(work, box);
+    const std::filesystem::path file = folder_ / "key";
+    if (!work.call.resume || !std::filesystem::exists(file) || read_file(file) != key) {
+      std::filesystem::remove_all(folder_);
+      make_folder(folder_);
+      write_file(file, key);
+    }
+  }
+  std::vector<std::uint8_t> operator()(std::size_t index) const {
+    const std::filesystem::path file = folder_ / (std::to_string(index) + ".png");
+    return std::filesystem::exists(file) ? io::read_grey(file).bytes : std::vector<std::uint8_t>();
+  }
+  void keep(const print::CompensatedLayer& layer) const {
+    const std::filesystem::path file = folder_ / (std::to_string(layer.index) + ".png");
+    if (!std::filesystem::exists(file))
+      write_file(file, io::encode_png_of_grey_bytes(layer.greys,
+                                                    static_cast<std::size_t>(layer.box.x_end - layer.box.x_begin)));
+  }
+  void done() const { std::filesystem::remove_all(folder_); }
+
+ private:
+  static std::string key_of(const Work& work, const print::PixelBox& box) {
+    std::string text = format("%d %d %d %d %lld\n", box.x_begin, box.y_begin, box.x_end, box.y_end,
+                              static_cast<long long>(work.call.integer("iterations")));
+    for (const print::SlicedBody& body : work.bodies) {
+      for (const Vec3& p : body.positions_m)
+        text += shortest_text(p.x) + " " + shortest_text(p.y) + " " + shortest_text(p.z) + "\n";
+      for (const auto& [a, b, c] : body.triangles) text += format("%u %u %u\n", a, b, c);
+    }
+    manifest::Document printer;
+    printer.prints[work.printer.name] = work.call.document.prints.at(work.printer.name);
+    for (manifest::PrintedPart& part : printer.prints.begin()->second.parts) part.mesh.clear();
+    printer.prints.begin()->second.layers.clear(), printer.prints.begin()->second.ground.clear();
+    return sha256(text + manifest::print_document(printer, "."));
+  }
+  std::filesystem::path folder_;
+};
+
 void compensate(Work& work, print::Slicer& slicer, Sender& sender) {
+  const Kept kept(work, slicer.box());
   print::Compensation compensation(
       work.printer, slicer.box(),
       [&] {
@@ -139,13 +187,16 @@ void compensate(Work& work, print::Slicer& slicer, Sender& sender) {
         if (layer != nullptr) add_totals(work.totals, *layer);
         return layer;
       },
-      static_cast<int>(work.call.integer("iterations")));
+      static_cast<int>(work.call.integer("iterations")), [&](std::size_t index) { return kept(index); });
   for (print::CompensatedLayer layer; compensation.next(layer);) {
     for (const auto& [sum, of] :
          {std::pair{&work.totals.before, &layer.before}, std::pair{&work.totals.after, &layer.after}})
       sum->sum_m2 += of->sum_m2, sum->voxels += of->voxels;
+    kept.keep(layer);
     sender.add({layer.index, layer.bottom_m, layer.top_m, layer.box, std::move(layer.greys)});
   }
+  sender.finish();
+  kept.done();
 }
 
 }  // namespace
@@ -164,8 +215,8 @@ void send_bodies(Work& work) {
       add_totals(work.totals, *layer);
       sender.add({layer->index, layer->bottom_m, layer->top_m, layer->box, greys.of(*layer)});
     }
+    sender.finish();
   }
-  sender.finish();
   constexpr double overlaps = 1e-6, counts = 1e-3;
   if (work.totals.excess > overlaps)
     log(LogLevel::warning, format("bodies overlap: a voxel would be full %.3g times over", 1 + work.totals.excess));

@@ -83,6 +83,34 @@ TEST_F(DlpSlice, OptionsThatContradict) {
   expect_refused({"--wish", "sq=3", "--printer", "printer.json", "--out", "o"}, 64, "--wish");
 }
 
+// A compensation that was interrupted goes on where it was, to the same bytes.
+TEST_F(DlpSlice, AnInterruptedCompensationIsTakenUp) {
+  std::string text = printer_text();
+  const std::size_t at = text.find("\"process\"");
+  write_file(path("spread.json"), text.insert(at, R"("bleed": {"sigma_m": 6e-6}, "overcure_m": 2e-5, )"));
+  write_file(path("post.obj"), box_obj(0.6, 0.4, 0.9));
+  const Words words{"dlp-slice",    "post.obj",     "--unit", "mm",          "--printer", "spread.json",
+                    "--compensate", "--iterations", "20",     "--log-level", "error"};
+  const auto with = [&](const Words& more) {
+    Words all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  Process process(with({"--out", "o", "-o", "o.json"}), folder_.path());
+  for (int k = 0; k < 4000 && !fs::exists(path("o/layers.sl1s.compensated/7.png")); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ::kill(process.id(), SIGINT);
+  EXPECT_EQ(process.end().status, 75);
+  EXPECT_FALSE(fs::exists(path("o/layers.sl1s")));
+  ASSERT_TRUE(fs::exists(path("o/layers.sl1s.compensated/7.png")));
+  const Ended resumed = run(with({"--out", "o", "-o", "o.json", "--resume"}), folder_.path());
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  const Ended whole = run(with({"--out", "w", "-o", "w.json"}), folder_.path());
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  EXPECT_EQ(read_file(path("o/layers.sl1s")), read_file(path("w/layers.sl1s")));
+  EXPECT_FALSE(fs::exists(path("o/layers.sl1s.compensated")));
+}
+
 // Ctrl-C in the middle: no archive that looks whole, exit 75.
 TEST_F(DlpSlice, AnInterruptLeavesNoHalfArchive) {
   write_file(path("tall.obj"), box_obj(0.9, 0.7, 400));
