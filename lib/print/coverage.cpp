@@ -86,10 +86,20 @@ void include(PixelBox& box, std::array<int, 2> x, std::array<int, 2> y) {
   box.y_begin = std::min(box.y_begin, y[0]), box.y_end = std::max(box.y_end, y[1]);
 }
 
+// `most`: the largest area of one triangle in the pixel so far.
+void add_facing(LayerCoverage::Facing& facing, std::size_t pixel, std::uint32_t triangle, double area, double depth,
+                float& most) {
+  facing.area[pixel] += static_cast<float>(area), facing.depth[pixel] += static_cast<float>(depth);
+  if (static_cast<float>(area) <= most) return;
+  most = static_cast<float>(area);
+  facing.triangle[pixel] = triangle;
+}
+
 }  // namespace
 
 struct CoverageSweep::Slice {
   Polygon polygon;
+  std::uint32_t triangle = 0;
   std::array<int, 2> columns{}, rows{};
 };
 
@@ -104,7 +114,8 @@ CoverageSweep::CoverageSweep(std::span<const Vec3> positions_m, std::span<const 
   std::ranges::stable_sort(by_height_, {}, lowest);
   layer_.top_m = bottom_m;
   layer_.share.resize(grid_.pixels());
-  layer_.facing_up.resize(grid_.pixels());
+  for (auto* facing : {&layer_.up, &layer_.down})
+    facing->area.resize(grid_.pixels()), facing->depth.resize(grid_.pixels()), facing->triangle.resize(grid_.pixels());
   below_.resize(grid_.pixels());
   if (by_height_.empty()) return;
   if (const double from = lowest(by_height_[0]); from < bottom_m) {
@@ -113,7 +124,8 @@ CoverageSweep::CoverageSweep(std::span<const Vec3> positions_m, std::span<const 
   }
 }
 
-// Triangles that reach into the layer. One that is flat belongs to the layer whose bottom it lies in, or lies above.
+// Triangles that reach into the layer. One that is flat belongs to the layer that it ends; at the very bottom to the
+// first.
 void CoverageSweep::admit(double bottom_m, double top_m) {
   const auto heights = [&](std::uint32_t t) {
     const auto& [a, b, c] = triangles_[t];
@@ -121,7 +133,7 @@ void CoverageSweep::admit(double bottom_m, double top_m) {
   };
   std::erase_if(active_, [&](std::uint32_t t) { return heights(t).max <= bottom_m; });
   const std::size_t known = active_.size();
-  for (; admitted_ < by_height_.size() && heights(by_height_[admitted_]).min < top_m; ++admitted_)
+  for (; admitted_ < by_height_.size() && heights(by_height_[admitted_]).min <= top_m; ++admitted_)
     active_.push_back(by_height_[admitted_]);
   std::sort(active_.begin() + static_cast<std::ptrdiff_t>(known), active_.end());
   std::inplace_merge(active_.begin(), active_.begin() + static_cast<std::ptrdiff_t>(known), active_.end());
@@ -139,6 +151,7 @@ std::vector<CoverageSweep::Slice> CoverageSweep::slices(double bottom_m, double 
         cut<&Corner::z>(triangle, bottom_m, unused, above);
         Slice& slice = all[k];
         cut<&Corner::z>(above, top_m, slice.polygon, unused);
+        slice.triangle = active_[k];
         if (slice.polygon.size < 3) return;
         slice.columns = covered(extent<&Corner::x>(slice.polygon), grid_.width_px);
         slice.rows = covered(extent<&Corner::y>(slice.polygon), grid_.height_px);
@@ -175,10 +188,13 @@ void CoverageSweep::fill(double bottom_m, double top_m) {
 double CoverageSweep::fill_row(std::span<const Slice> slices, std::span<const std::uint32_t> mine, int row) {
   const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width_px);
   double* const share = layer_.share.data() + first;
-  double* const up = layer_.facing_up.data() + first;
   double* const below = below_.data() + first;
   const double thickness = layer_.top_m - layer_.bottom_m;
-  for (int i = layer_.box.x_begin; i < layer_.box.x_end; ++i) share[i] = -thickness * below[i], up[i] = 0;
+  for (int i = layer_.box.x_begin; i < layer_.box.x_end; ++i) share[i] = -thickness * below[i];
+  std::vector<float> most_up(static_cast<std::size_t>(grid_.width_px)), most_down(most_up);
+  for (auto* facing : {&layer_.up, &layer_.down})
+    for (int i = layer_.box.x_begin; i < layer_.box.x_end; ++i)
+      facing->area[first + static_cast<std::size_t>(i)] = facing->depth[first + static_cast<std::size_t>(i)] = 0;
   Polygon rest, part, unused;
   for (const std::uint32_t k : mine) {
     const Slice& slice = slices[k];
@@ -193,7 +209,12 @@ double CoverageSweep::fill_row(std::span<const Slice> slices, std::span<const st
       const auto [area, height] = integral(part, layer_.bottom_m);
       share[i] += height - thickness * area;
       below[i] += area;
-      if (area > 0) up[i] += area;
+      const std::size_t pixel = first + static_cast<std::size_t>(i);
+      if (area > 0)
+        add_facing(layer_.up, pixel, slice.triangle, area, height / thickness, most_up[static_cast<std::size_t>(i)]);
+      else if (area < 0)
+        add_facing(layer_.down, pixel, slice.triangle, -area, height / thickness - area,
+                   most_down[static_cast<std::size_t>(i)]);
     }
   }
   double excess = 0;

@@ -37,9 +37,14 @@ struct LayerCoverage {
   double bottom_m = 0, top_m = 0;
   PixelBox box{};               // outside of it all is 0
   std::vector<double> share{};  // of the voxel, row by row, width_px x height_px; 0 to 1
-  // Of the pixel: the part above or beneath which a surface of this layer faces up, towards what is printed next; where
-  // several lie in one voxel the sum.
-  std::vector<double> facing_up{};
+  // Surfaces within this layer that face up, towards what is printed next, and down: of the pixel the part that they
+  // cover; of the voxel what lies beneath the former, above the latter; and the triangle that covers most of it. Where
+  // several lie in one voxel the sum. A flat top belongs to the layer that ends with it.
+  struct Facing {
+    std::vector<float> area{}, depth{};
+    std::vector<std::uint32_t> triangle{};  // only where area is more than 0
+  };
+  Facing up{}, down{};
   double excess = 0;  // the most by which a voxel was more than full: above 1e-9 bodies overlap or the mesh is open
 };
 

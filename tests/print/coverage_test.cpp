@@ -195,10 +195,10 @@ TEST(Coverage, SurfacesThatFaceUpAreMeasured) {
   const PixelGrid grid{4, 4, {1e-5, 1e-5}, {0, 0}};
   const Body body = box({0.5e-5, 0.5e-5, 0.2e-5}, {3.5e-5, 3.5e-5, 1.5e-5});
   CoverageSweep sweep(body.positions_m, body.triangles, grid, 0);
-  EXPECT_EQ(sweep.next(1e-5).facing_up[5], 0);
+  EXPECT_EQ(sweep.next(1e-5).up.area[5], 0);
   const LayerCoverage& l = sweep.next(2e-5);
-  EXPECT_NEAR(l.facing_up[5], 1, 1e-12);
-  EXPECT_NEAR(l.facing_up[0], 0.25, 1e-12);
+  EXPECT_NEAR(l.up.area[5], 1, 1e-12);
+  EXPECT_NEAR(l.up.area[0], 0.25, 1e-12);
 }
 
 TEST(Coverage, BodiesThatOverlapAreSaid) {

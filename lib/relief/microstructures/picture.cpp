@@ -2,7 +2,6 @@
 // formula. Its rows run along u, its columns against v, its centre lies at the origin of both; beyond its edges it is
 // what `beyond` says, so that a code has its quiet zone. Between the centres of its pixels it is linear, or, of `sharp`
 // 1, every pixel is one square.
-#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -12,17 +11,10 @@
 namespace gonio::relief {
 namespace {
 
-double at_pixel(const io::GreyImage& picture, int x, int y, double beyond) {
-  if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return beyond;
-  const std::size_t k =
-      static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
-  return std::clamp(picture.values.empty() ? picture.bytes[k] / 255.0 : picture.values[k] / 255.0, 0.0, 1.0);
-}
-
 double between(const io::GreyImage& picture, double x, double y, double beyond) {
   const double x0 = std::floor(x), y0 = std::floor(y), u = x - x0, v = y - y0;
   const auto at = [&](int i, int j) {
-    return at_pixel(picture, static_cast<int>(x0) + i, static_cast<int>(y0) + j, beyond);
+    return pixel_share(picture, static_cast<int>(x0) + i, static_cast<int>(y0) + j, beyond);
   };
   return (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) + v * ((1 - u) * at(0, 1) + u * at(1, 1));
 }
@@ -61,10 +53,10 @@ class Picture final : public Microstructure {
     return [picture = files.picture, pixel_m = amounts[0], beyond = amounts[1], sharp = amounts[2] >= 1,
             turn = Turn(amounts[3])](const SurfacePlace& at) {
       const Vec2 p = turn(at.along_m);
-      const double x = p.x / pixel_m + (picture->width - 1) / 2.0, y = (picture->height - 1) / 2.0 - p.y / pixel_m;
-      if (!(std::abs(x) < 1e9 && std::abs(y) < 1e9)) return beyond;
+      const auto [x, y] = in_pixels(*picture, p, pixel_m);
       if (!sharp) return between(*picture, x, y, beyond);
-      return at_pixel(*picture, static_cast<int>(std::floor(x + 0.5)), static_cast<int>(std::floor(y + 0.5)), beyond);
+      return pixel_share(*picture, static_cast<int>(std::floor(x + 0.5)), static_cast<int>(std::floor(y + 0.5)),
+                         beyond);
     };
   }
 };

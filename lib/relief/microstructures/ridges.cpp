@@ -21,18 +21,26 @@ class Ridges final : public Microstructure {
         .id = "ridges",
         .sentence = "Parallel ridges: long facets that tilt, walls at right angles to them.",
         .source = "Luongo et al. 2017; Luongo et al. 2020, figure 13",
-        .parameters = {
-            {.name = "ridge_rad",
-             .unit = "rad",
-             .preset = {},
-             .lower = 1e-3,
-             .upper = 0.786,
-             .meaning = "tilt of the long facets"},
-            {.name = "pitch_m", .unit = "m", .preset = {}, .lower = 1e-9, .upper = 1, .meaning = "from crest to crest"},
-            turn_parameter()}};
+        .parameters = {{.name = "ridge_rad",
+                        .unit = "rad",
+                        .preset = {},
+                        .lower = 1e-3,
+                        .upper = 0.786,
+                        .meaning = "tilt of the long facets"},
+                       {.name = "pitch_m",
+                        .unit = "m",
+                        .preset = {},
+                        .lower = 1e-9,
+                        .upper = 1,
+                        .meaning = "from crest to crest"},
+                       turn_parameter(),
+                       cell_parameter()},
+        .attachment = manifest::Attachment::picture,
+        .attachment_meaning = cells_meaning,
+        .attachment_as_sent = true};
     return info;
   }
-  ShareAt made(std::span<const double> amounts, double depth_m, const MicrostructureFiles&,
+  ShareAt made(std::span<const double> amounts, double depth_m, const MicrostructureFiles& files,
                const std::string& place) const override {
     RidgeShape shape;
     shape.ridge_rad = amounts[0], shape.pitch_m = amounts[1];
@@ -44,7 +52,7 @@ class Ridges final : public Microstructure {
                       report::number_text(depth_m * 1e6, 3) + " um",
                   "take a pitch of at most " + report::number_text(shape.pitch_m * depth_m / high_m * 1e6, 3) + " um" +
                       ", or a thicker layer");
-    return [shape, depth_m, turn = Turn(amounts[2])](const SurfacePlace& at) {
+    return [shape, depth_m, turn = TurnByCells(amounts[2], files.picture, amounts[3], place)](const SurfacePlace& at) {
       return std::clamp(1 + ridge_profile_m(shape, turn(at.along_m).y) / depth_m, 0.0, 1.0);
     };
   }

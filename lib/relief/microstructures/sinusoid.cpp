@@ -21,13 +21,18 @@ class Sinusoid final : public Microstructure {
         .parameters = {{.name = "wave_u_m", .unit = "m", .preset = {}, .lower = 0, .upper = 1, .meaning = "along u"},
                        {.name = "wave_v_m", .unit = "m", .preset = 0.0, .lower = 0, .upper = 1, .meaning = "along v"},
                        {.name = "share", .unit = "1", .preset = 1.0, .lower = 0, .upper = 1, .meaning = "of the layer"},
-                       turn_parameter()}};
+                       turn_parameter(),
+                       cell_parameter()},
+        .attachment = manifest::Attachment::picture,
+        .attachment_meaning = cells_meaning,
+        .attachment_as_sent = true};
     return info;
   }
-  ShareAt made(std::span<const double> amounts, double, const MicrostructureFiles&, const std::string&) const override {
+  ShareAt made(std::span<const double> amounts, double, const MicrostructureFiles& files,
+               const std::string& place) const override {
     const auto per_m = [](double wave_m) { return wave_m > 0 ? 2 * std::numbers::pi / wave_m : 0; };
     return [u = per_m(amounts[0]), v = per_m(amounts[1]), share = amounts[2],
-            turn = Turn(amounts[3])](const SurfacePlace& at) {
+            turn = TurnByCells(amounts[3], files.picture, amounts[4], place)](const SurfacePlace& at) {
       const Vec2 p = turn(at.along_m);
       const double wave = (u > 0 ? std::sin(u * p.x) : 1) * (v > 0 ? std::sin(v * p.y) : 1);
       return 1 + share * (wave - 1) / 2;

@@ -1,0 +1,80 @@
+// See bleed.h. OpenCV, for its Fourier transforms, stays within this file.
+#include "print/bleed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/core.hpp>
+
+namespace gonio::print {
+namespace {
+
+double core(double from, double to, double sigma) {  // of a Gaussian about 0
+  if (!(sigma > 0)) return from <= 0 && to > 0 ? 1 : 0;
+  return (std::erf(to / (sigma * std::numbers::sqrt2)) - std::erf(from / (sigma * std::numbers::sqrt2))) / 2;
+}
+
+double corner(double x, double y, double w) {
+  return std::atan(x * y / (w * std::sqrt(w * w + x * x + y * y))) / (2 * std::numbers::pi);
+}
+
+}  // namespace
+
+double Bleed::at(Vec2 offset_m, Vec2 pixel_m) const {
+  const double x0 = offset_m.x - pixel_m.x / 2, x1 = offset_m.x + pixel_m.x / 2;
+  const double y0 = offset_m.y - pixel_m.y / 2, y1 = offset_m.y + pixel_m.y / 2;
+  const double share = tail_m > 0 ? tail_share : 0;
+  double light = (1 - share) * core(x0, x1, sigma_m) * core(y0, y1, sigma_m);
+  if (share > 0)
+    light +=
+        share * (corner(x1, y1, tail_m) - corner(x0, y1, tail_m) - corner(x1, y0, tail_m) + corner(x0, y0, tail_m));
+  return light;
+}
+
+struct Spread::Kernel {
+  cv::Mat spectrum;  // packed
+  cv::Size size;
+};
+
+Spread::Spread(const Bleed& bleed, Vec2 pixel_m, int width_px, int height_px, Vec2 offset_px)
+    : width_(width_px), height_(height_px) {
+  if (bleed.none() && offset_px.x == 0 && offset_px.y == 0) return;
+  kernel_ = std::make_unique<Kernel>();
+  // As far as a picture reaches on either side, so that nothing comes round.
+  kernel_->size = {cv::getOptimalDFTSize(2 * width_px), cv::getOptimalDFTSize(2 * height_px)};
+  cv::Mat kernel(kernel_->size, CV_32F, cv::Scalar(0));
+  for (int j = 1 - height_px; j < height_px; ++j) {
+    auto* row = kernel.ptr<float>((j + kernel_->size.height) % kernel_->size.height);
+    for (int i = 1 - width_px; i < width_px; ++i)
+      row[(i + kernel_->size.width) % kernel_->size.width] =
+          static_cast<float>(bleed.at({(i + offset_px.x) * pixel_m.x, (j + offset_px.y) * pixel_m.y}, pixel_m));
+  }
+  cv::dft(kernel, kernel_->spectrum);
+}
+Spread::~Spread() = default;
+Spread::Spread(Spread&&) noexcept = default;
+
+void Spread::filtered(std::span<const float> from, std::span<float> to, bool backwards) const {
+  const std::size_t width = static_cast<std::size_t>(width_);
+  if (!kernel_) {
+    std::copy(from.begin(), from.end(), to.begin());
+    return;
+  }
+  cv::Mat field(kernel_->size, CV_32F, cv::Scalar(0));
+  for (int y = 0; y < height_; ++y)
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(y * width), width_, field.ptr<float>(y));
+  cv::dft(field, field, 0, height_);
+  cv::mulSpectrums(field, kernel_->spectrum, field, 0, backwards);
+  cv::idft(field, field, cv::DFT_SCALE | cv::DFT_REAL_OUTPUT, height_);
+  for (int y = 0; y < height_; ++y)
+    std::copy_n(field.ptr<float>(y), width_, to.begin() + static_cast<std::ptrdiff_t>(y * width));
+}
+
+void Spread::operator()(std::span<const float> light, std::span<float> spread) const {
+  filtered(light, spread, false);
+}
+void Spread::backwards(std::span<const float> at, std::span<float> slopes) const {
+  filtered(at, slopes, true);
+}
+
+}  // namespace gonio::print
