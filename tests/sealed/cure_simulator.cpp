@@ -158,25 +158,25 @@ void shine(const Cure& c, Vat& vat, int top, const std::vector<double>& light) {
 }
 
 // Thickness of the gel below the membrane, in layers.
-double thickness(const Cure& c, const Vat& vat, int layer, std::size_t i, double critical) {
-  // Conversion 1 - exp(-k acted), k such that the critical one is that of `critical`.
-  const double k = -std::log(1 - critical_conversion) / critical;
+double thickness(const Cure& c, const Vat& vat, int layer, std::size_t i, const Rates& rates) {
+  // Conversion 1 - exp(-k acted), k such that the critical one is that of `rates.critical`.
+  const double critical = rates.critical, k = -std::log(1 - critical_conversion) / critical;
+  const auto beyond = [&](double acted) {  // along Beer and Lambert's law, to where it is critical
+    return c.penetration * std::log((std::max(acted, 1e-12) + rates.oxygen) / (critical + rates.oxygen));
+  };
   double last = 0;
   for (int d = 0; d < depth_cells; ++d) {
     const double acted = static_cast<double>(vat.acted[vat.place(layer, d) + i]);
     const double conversion = 1 - std::exp(-k * acted);
     if (conversion < critical_conversion) {
       const double middle = (d + 0.5) / depth_cells;
-      if (d == 0) {  // within the first half of a cell: along Beer and Lambert's law
-        const double below = c.penetration * std::log(std::max(acted, 1e-12) / critical);
-        return std::max(0.0, middle + below);
-      }
+      if (d == 0) return acted > 0 ? std::max(0.0, middle + beyond(acted)) : 0;
       const double t = std::log(last / critical) / std::log(last / std::max(acted, 1e-12));
       return middle - (1 - t) / depth_cells;
     }
     last = acted;
   }
-  return std::min(1.0, 1 - 0.5 / depth_cells + c.penetration * std::log(last / critical));
+  return std::min(1.0, 1 - 0.5 / depth_cells + beyond(last));
 }
 
 std::vector<double> beside_open(const Cure& c, const Greys& picture) {
@@ -228,7 +228,7 @@ std::vector<double> cured(const Cure& c, const std::vector<Greys>& pictures) {
   std::vector<double> heights(vat.plane(), 0.0);
   for (std::size_t i = 0; i < vat.plane(); ++i)
     for (int layer = vat.layers - 1; layer >= 0; --layer) {
-      const double gap = 1 - c.bulge, thick = std::min(gap, thickness(c, vat, layer, i, rates.critical));
+      const double gap = 1 - c.bulge, thick = std::min(gap, thickness(c, vat, layer, i, rates));
       if (thick <= 0) continue;
       heights[i] = layer + thick;
       if (c.scratch != 0) heights[i] += scratched(c, static_cast<int>(i) % vat.side, static_cast<int>(i) / vat.side);

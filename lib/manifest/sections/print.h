@@ -41,6 +41,11 @@ struct PrintedPart {
   std::vector<std::string> repaired;          // what was done to the mesh, in words
   std::optional<double> volume_m3, facing_m2, hidden_m2, hidden_printed_m2;
 };
+struct MeasuredPrint {         // a map of a printed surface, seen from the projector
+  std::string relief;          // name in reliefs
+  std::vector<double> at_m;    // where the first point of the map's last row lies on the platform [x, y]
+  double turn_rad = 0;         // of the map's rows about z, on the platform
+};
 struct Print {  // "prints"
   std::vector<double> pixel_m;
   std::int64_t width_px = 0, height_px = 0;
@@ -56,6 +61,7 @@ struct Print {  // "prints"
   std::map<std::string, double> process;  // of the machine: exposure_s, lift_m, ...; units end the names
   std::map<std::string, double> figures;  // of the job: printed_layers, volume_m3, time_s, ...
   std::string relief, mesh, surface;      // predicted: names in reliefs, meshes, surfaces
+  std::vector<MeasuredPrint> measured;
 };
 
 }  // namespace gonio::manifest
