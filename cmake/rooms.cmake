@@ -77,6 +77,10 @@ function(gonio_finish_library)
   gonio_registry(${GONIO_GENERATED}/volume_formats.cpp VolumeFormat io/volume.h
     "std::span<const gonio::io::VolumeFormat* const> gonio::io::all_volume_formats()" gonio::io::volumes
     ${volume_files})
+  file(GLOB archive_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/print/archives/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/archive_formats.cpp ArchiveFormat print/archive.h
+    "std::span<const gonio::print::ArchiveFormat* const> gonio::print::all_archive_formats()" gonio::print::archives
+    ${archive_files})
   file(GLOB driver_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/acquisition/device/drivers/*.cpp)
   gonio_registry(${GONIO_GENERATED}/drivers.cpp Driver acquisition/device/devices.h
     "std::span<const gonio::acquisition::Driver* const> gonio::acquisition::all_drivers()"
@@ -107,7 +111,8 @@ function(gonio_finish_library)
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
       ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/microstructures.cpp ${bindings}
       ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp
-      ${GONIO_GENERATED}/volume_formats.cpp ${GONIO_GENERATED}/drivers.cpp ${GONIO_GENERATED}/view_patterns.cpp)
+      ${GONIO_GENERATED}/volume_formats.cpp ${GONIO_GENERATED}/archive_formats.cpp
+      ${GONIO_GENERATED}/drivers.cpp ${GONIO_GENERATED}/view_patterns.cpp)
   if(EXISTS ${CMAKE_SOURCE_DIR}/lib/surface/surface.h)
     list(APPEND registries ${GONIO_GENERATED}/surfaces.cpp ${GONIO_GENERATED}/laws.cpp)
   endif()

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/growing_file.h"
 #include "base/temporaries.h"
 
 namespace gonio {
@@ -127,14 +128,6 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
 }
 
-// ".stem.pid-n.ext" beside the target; a long stem is cut to keep within the 255 bytes of a file name.
-std::filesystem::path temporary_for(const std::filesystem::path& target) {
-  static std::atomic<unsigned> counter{0};
-  const std::string stem = target.stem().string().substr(0, 160);
-  const std::string unique = std::to_string(::getpid()) + "-" + std::to_string(counter++);
-  return folder_of(target) / ("." + stem + "." + unique + target.extension().string());
-}
-
 // Where the bytes really go: symbolic links are followed, so that a link is not replaced by a file.
 std::filesystem::path resolved(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -154,6 +147,12 @@ Kind kind_of(const std::filesystem::path& path) {
 
 void refuse_folder(const std::filesystem::path& path) {
   throw Error(Exit::cannot_create, path.string(), "is a folder", "name a file");
+}
+
+void refuse_all_but_files(const std::filesystem::path& path, const std::filesystem::path& target) {
+  const Kind kind = kind_of(target);
+  if (kind == Kind::folder) refuse_folder(path);
+  if (kind == Kind::device) throw Error(Exit::cannot_create, path.string(), "is not a plain file", "name a plain file");
 }
 
 void rename_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target) {
@@ -200,6 +199,13 @@ void write_named(const std::filesystem::path& target, std::string_view bytes) {
 
 }  // namespace
 
+std::filesystem::path temporary_for(const std::filesystem::path& target) {
+  static std::atomic<unsigned> counter{0};
+  const std::string stem = target.stem().string().substr(0, 160);
+  const std::string unique = std::to_string(::getpid()) + "-" + std::to_string(counter++);
+  return folder_of(target) / ("." + stem + "." + unique + target.extension().string());
+}
+
 void remove_temporaries() noexcept {
   for (auto& t : temporaries)
     if (t.state.load() == Temporary::live) ::unlink(t.path.data());
@@ -222,9 +228,7 @@ void write_file_through(const std::filesystem::path& path,
                         const std::function<void(const std::filesystem::path& temporary)>& write) {
   throw_if_interrupted();
   const auto target = resolved(path);
-  const Kind kind = kind_of(target);
-  if (kind == Kind::folder) refuse_folder(path);
-  if (kind == Kind::device) throw Error(Exit::cannot_create, path.string(), "is not a plain file", "name a plain file");
+  refuse_all_but_files(path, target);
   const auto temporary = temporary_for(target);
   const Registered registered(temporary.string());
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -234,6 +238,45 @@ void write_file_through(const std::filesystem::path& path,
   if (!written.valid()) throw_write_error(path, errno);
   flush(written.get(), path);
   rename_into_place(temporary, target);
+}
+
+struct GrowingFile::Temporary {
+  explicit Temporary(const std::filesystem::path& where)
+      : path(where),
+        registered(where.string()),
+        file(::open(where.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {}
+  std::filesystem::path path;
+  Registered registered;
+  Descriptor file;
+};
+
+GrowingFile::GrowingFile(const std::filesystem::path& path) : path_(path), target_(resolved(path)) {
+  throw_if_interrupted();
+  refuse_all_but_files(path, target_);
+  temporary_ = std::make_unique<Temporary>(temporary_for(target_));
+  if (!temporary_->file.valid()) throw_create_error(path, errno);
+}
+
+GrowingFile::~GrowingFile() = default;
+
+void GrowingFile::append(std::string_view bytes) {
+  throw_if_interrupted();
+  write_all(temporary_->file.get(), bytes, path_);
+  size_ += bytes.size();
+}
+
+void GrowingFile::overwrite(std::uint64_t at, std::string_view bytes) {
+  const int file = temporary_->file.get();
+  if (::lseek(file, static_cast<off_t>(at), SEEK_SET) < 0) throw_write_error(path_, errno);
+  write_all(file, bytes, path_);
+  if (::lseek(file, 0, SEEK_END) < 0) throw_write_error(path_, errno);
+}
+
+void GrowingFile::commit() {
+  flush(temporary_->file.get(), path_);
+  close_checked(temporary_->file, path_);
+  rename_into_place(temporary_->path, target_);
+  temporary_.reset();
 }
 
 std::string read_file(const std::filesystem::path& path, std::uint64_t limit) {

@@ -98,6 +98,70 @@ std::optional<std::vector<std::uint8_t>> decode_png_of_grey_bytes(std::string_vi
   return rows;
 }
 
+namespace {
+
+std::string big_endian(std::size_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+  return bytes;
+}
+
+void append_chunk(std::string& file, std::string_view type, std::string_view data) {
+  file += big_endian(data.size());
+  const std::size_t from = file.size();
+  file.append(type).append(data);
+  file += big_endian(crc32_of(std::string_view(file).substr(from)));
+}
+
+// Bytes as signed differences: how large they are in sum.
+std::size_t size_of_differences(const std::uint8_t* row, std::size_t width) {
+  std::size_t sum = 0;
+  for (std::size_t x = 0; x < width; ++x) sum += row[x] < 128 ? row[x] : 256u - row[x];
+  return sum;
+}
+
+// One row behind its filter's number; `trial` is room for another.
+void filter_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t width, std::uint8_t* to,
+                std::uint8_t* trial) {
+  to[0] = up;
+  for (std::size_t x = 0; x < width; ++x) to[x + 1] = static_cast<std::uint8_t>(row[x] - above[x]);
+  std::size_t least = size_of_differences(to + 1, width);
+  if (least == 0) return;
+  trial[0] = sub;
+  trial[1] = row[0];
+  for (std::size_t x = 1; x < width; ++x) trial[x + 1] = static_cast<std::uint8_t>(row[x] - row[x - 1]);
+  if (const std::size_t size = size_of_differences(trial + 1, width); size < least) {
+    least = size;
+    std::memcpy(to, trial, width + 1);
+  }
+  if (size_of_differences(row, width) < least) {
+    to[0] = none;
+    std::memcpy(to + 1, row, width);
+  }
+}
+
+}  // namespace
+
+std::string encode_png_of_grey_bytes(std::span<const std::uint8_t> rows, std::size_t width) {
+  const std::size_t height = width == 0 ? 0 : rows.size() / width;
+  std::vector<std::uint8_t> filtered((width + 1) * height), trial(width + 1), nothing(width);
+  for (std::size_t y = 0; y < height; ++y) {
+    const std::uint8_t* const row = rows.data() + y * width;
+    filter_row(row, y > 0 ? row - width : nothing.data(), width, filtered.data() + y * (width + 1), trial.data());
+  }
+  thread_local const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> deflate(
+      libdeflate_alloc_compressor(6), &libdeflate_free_compressor);
+  if (!deflate) throw std::bad_alloc();
+  std::string packed(libdeflate_zlib_compress_bound(deflate.get(), filtered.size()), '\0');
+  packed.resize(
+      libdeflate_zlib_compress(deflate.get(), filtered.data(), filtered.size(), packed.data(), packed.size()));
+  std::string file("\x89PNG\r\n\x1a\n", 8);
+  append_chunk(file, "IHDR", big_endian(width) + big_endian(height) + std::string("\x08\0\0\0\0", 5));
+  append_chunk(file, "IDAT", packed);
+  append_chunk(file, "IEND", {});
+  return file;
+}
+
 std::uint32_t crc32_of(std::string_view bytes) {
   return libdeflate_crc32(0, bytes.data(), bytes.size());
 }
