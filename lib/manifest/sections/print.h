@@ -41,10 +41,10 @@ struct PrintedPart {
   std::vector<std::string> repaired;          // what was done to the mesh, in words
   std::optional<double> volume_m3, facing_m2, hidden_m2, hidden_printed_m2;
 };
-struct MeasuredPrint {         // a map of a printed surface, seen from the projector
-  std::string relief;          // name in reliefs
-  std::vector<double> at_m;    // where the first point of the map's last row lies on the platform [x, y]
-  double turn_rad = 0;         // of the map's rows about z, on the platform
+struct MeasuredPrint {       // a map of the printed surface, seen from the projector; heights from any plane
+  std::string relief;        // name in reliefs
+  std::vector<double> at_m;  // where its first point, of the uppermost row, lies on the platform [x, y]
+  double turn_rad = 0;       // of its rows about z, on the platform
 };
 struct Print {  // "prints"
   std::vector<double> pixel_m;

@@ -1,0 +1,177 @@
+// See printed_field.h.
+#include "explain/prints/printed_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "print/cure.h"
+#include "print/mechanisms/print_layer_shift.h"
+#include "print/mechanisms/print_membrane.h"
+#include "print/mechanisms/print_pixel_tilt.h"
+
+namespace gonio::explain::prints {
+namespace {
+
+using Picture = std::vector<float>;
+
+std::size_t place(int x, int y, int width) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
+Picture in_cells(const Picture& pixels, const Sent& sent) {
+  const int width = sent.wide() * cells_per_pixel, height = sent.high() * cells_per_pixel;
+  Picture cells(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      cells[place(x, y, width)] = pixels[place(x / cells_per_pixel, y / cells_per_pixel, sent.wide())];
+  return cells;
+}
+
+// What of a picture that lies `by` cells further falls on each cell; beyond it it is dark.
+Picture moved(const Picture& from, int width, int height, Vec2 by) {
+  Picture to(from.size());
+  const auto value = [&](int x, int y) {
+    return x < 0 || y < 0 || x >= width || y >= height ? 0.0 : static_cast<double>(from[place(x, y, width)]);
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double u = x - by.x, v = y - by.y;
+      const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+      const double fx = u - i, fy = v - j;
+      to[place(x, y, width)] = static_cast<float>((1 - fy) * ((1 - fx) * value(i, j) + fx * value(i + 1, j)) +
+                                                  fy * ((1 - fx) * value(i, j + 1) + fx * value(i + 1, j + 1)));
+    }
+  return to;
+}
+
+// Spreads that differ over the field: light is shared out between a few even ones, so that its variance is right.
+class Defocus {
+ public:
+  Defocus(const Setting& setting, const Sent& sent, Vec2 cell_m, int width, int height)
+      : width_(width), height_(height) {
+    const print::PixelGrid grid = setting.printer.grid();
+    const Vec2 field_m{grid.width_px * grid.pixel_m.x, grid.height_px * grid.pixel_m.y};
+    variance_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    double most = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const Vec2 at = sent.corner_m - grid.corner_m + Vec2{(x + 0.5) * cell_m.x, (y + 0.5) * cell_m.y};
+        const double s = equation::print_pixel_tilt(at, field_m, setting.tilt.x, setting.tilt.y);
+        variance_[place(x, y, width)] = s * s;
+        most = std::max(most, s);
+      }
+    for (std::size_t k = 0; k < levels; ++k) {
+      const double s = most * static_cast<double>(k) / (levels - 1);
+      level_.push_back(s * s);
+      spread_.emplace_back(print::Bleed{s, 0, 0}, cell_m, width, height);
+    }
+  }
+  Picture operator()(const Picture& light) const {
+    Picture all(light.size(), 0.0f), share(light.size()), spread(light.size());
+    for (std::size_t k = 0; k < levels; ++k) {
+      for (std::size_t i = 0; i < light.size(); ++i) share[i] = light[i] * static_cast<float>(weight(k, variance_[i]));
+      spread_[k](share, spread);
+      for (std::size_t i = 0; i < light.size(); ++i) all[i] += spread[i];
+    }
+    return all;
+  }
+
+ private:
+  static constexpr std::size_t levels = 5;
+  double weight(std::size_t k, double variance) const {
+    if (k > 0 && variance < level_[k]) return std::max(0.0, (variance - level_[k - 1]) / (level_[k] - level_[k - 1]));
+    if (k + 1 < levels && variance >= level_[k])
+      return std::max(0.0, (level_[k + 1] - variance) / (level_[k + 1] - level_[k]));
+    return variance >= level_[k] ? 1 : 0;
+  }
+  int width_, height_;
+  std::vector<double> variance_, level_;
+  std::vector<print::Spread> spread_;
+};
+
+// The integral of a box of two cells under a Gaussian, from the far left to x; the box is centred on 0.
+double boxed(double x, double sigma) {
+  const auto ramp = [sigma](double u) {
+    if (sigma < 1e-4) return std::max(0.0, u);
+    const double z = u / sigma;
+    return u * 0.5 * std::erfc(-z / std::numbers::sqrt2) +
+           sigma * std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+  };
+  constexpr double half = 0.5 * cells_per_pixel;
+  return (ramp(x + half) - ramp(x - half)) / (2 * half);
+}
+
+}  // namespace
+
+Field printed_field(const Sent& sent, const Setting& setting) {
+  Field field;
+  field.width = sent.wide() * cells_per_pixel, field.height = sent.high() * cells_per_pixel;
+  field.corner_m = sent.corner_m;
+  field.cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
+  print::Printer fine = setting.printer;
+  fine.pixel_m = field.cell_m;
+  fine.width_px *= cells_per_pixel, fine.height_px *= cells_per_pixel;
+  const print::PixelBox box{0, 0, field.width, field.height};
+  print::Cure cure(fine, box);
+  std::unique_ptr<Defocus> defocus;
+  if (setting.tilt.x != 0 || setting.tilt.y != 0)
+    defocus = std::make_unique<Defocus>(setting, sent, field.cell_m, field.width, field.height);
+  std::vector<double> bottom{0};
+  for (std::size_t k = 0; k < sent.layers.size(); ++k) bottom.push_back(bottom.back() + fine.thickness_m(k));
+  for (std::size_t k = sent.layers.size(); k-- > 0;) {
+    Picture light = in_cells(sent.layers[k], sent);
+    const Vec2 by = setting.shifted_from > 0
+                        ? equation::print_layer_shift(static_cast<double>(k + 1), setting.shifted_from,
+                                                      setting.shift_m.x, setting.shift_m.y)
+                        : Vec2{0, 0};
+    if (by.x != 0 || by.y != 0)
+      light = moved(light, field.width, field.height, {by.x / field.cell_m.x, by.y / field.cell_m.y});
+    if (defocus) light = (*defocus)(light);
+    cure.add(light, bottom[k], bottom[k + 1]);
+  }
+  const print::CuredSurface& surface = cure.surface();
+  const auto finite = [](float v) { return std::isfinite(v) ? static_cast<double>(v) : 0.0; };
+  for (std::size_t i = 0; i < surface.top_m.size(); ++i) {
+    field.floor_m.push_back(finite(surface.floor_m[i])), field.ceiling_m.push_back(finite(surface.ceiling_m[i]));
+    const double top = finite(surface.top_m[i]);
+    field.top_m.push_back(setting.cut_m > 0 ? equation::print_membrane(top, field.ceiling_m.back(), setting.cut_m)
+                                            : top);
+  }
+  return field;
+}
+
+PixelMeans::PixelMeans(const Field& field, const std::vector<double>& values, double resolution_cells)
+    : width_(field.width + 1), height_(field.height + 1) {
+  const double sigma = std::max(0.0, resolution_cells);
+  const int reach = static_cast<int>(std::ceil(1 + 4 * sigma));
+  std::vector<double> weight;  // of the cells beside a corner, from -reach on
+  for (int c = -reach; c < reach; ++c) weight.push_back(boxed(c + 1, sigma) - boxed(c, sigma));
+  std::vector<double> rows(static_cast<std::size_t>(width_) * static_cast<std::size_t>(field.height));
+  for (int y = 0; y < field.height; ++y)
+    for (int x = 0; x < width_; ++x) {
+      double sum = 0;
+      for (int c = -reach; c < reach; ++c)
+        sum += weight[static_cast<std::size_t>(c + reach)] *
+               values[place(std::clamp(x + c, 0, field.width - 1), y, field.width)];
+      rows[place(x, y, width_)] = sum;
+    }
+  knot_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  for (int y = 0; y < height_; ++y)
+    for (int c = -reach; c < reach; ++c) {
+      const double w = weight[static_cast<std::size_t>(c + reach)];
+      const int from = std::clamp(y + c, 0, field.height - 1);
+      for (int x = 0; x < width_; ++x) knot_[place(x, y, width_)] += w * rows[place(x, from, width_)];
+    }
+}
+
+double PixelMeans::at(double x, double y) const {
+  x = std::clamp(x, 0.0, width_ - 1.000001), y = std::clamp(y, 0.0, height_ - 1.000001);
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const double fx = x - i, fy = y - j;
+  const double* k = &knot_[place(i, j, width_)];
+  return (1 - fy) * ((1 - fx) * k[0] + fx * k[1]) + fy * ((1 - fx) * k[width_] + fx * k[width_ + 1]);
+}
+
+}  // namespace gonio::explain::prints
