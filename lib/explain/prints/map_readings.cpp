@@ -13,7 +13,7 @@
 namespace gonio::explain::prints {
 namespace {
 
-constexpr double um = 1e6, fewest_points = 2.0 / 3, wall_place_px = 0.04, usual_resolution_cells = 0.4, even = 0.02;
+constexpr double um = 1e6, fewest_points = 2.0 / 3, wall_place_px = 0.02, usual_resolution_cells = 0.4, even = 0.02;
 constexpr std::size_t fewest_readings = 400, fewest_triples = 30;
 constexpr int patches = 4, tile_px = 4;
 constexpr double stands_out = 6;  // of the points of one pixel
@@ -68,8 +68,12 @@ void gather(const PrintsInput& input, std::size_t which, Readings& readings) {
       ++readings.without_points;
       continue;
     }
+    const auto first = static_cast<std::uint32_t>(readings.points.size());
+    for (std::size_t i = 0; i < pile.z.size(); ++i) readings.points.push_back({pile.x[i], pile.y[i]});
     readings.rows.push_back({.map = which,
                              .at_m = {mean(pile.x), mean(pile.y)},
+                             .first = first,
+                             .points = static_cast<std::uint32_t>(pile.z.size()),
                              .x_px = at.second,
                              .y_px = at.first,
                              .z_um = um * mean(pile.z)});
@@ -77,7 +81,7 @@ void gather(const PrintsInput& input, std::size_t which, Readings& readings) {
 }
 
 void look_up(const Sent& sent, const Field& field, Readings& readings) {
-  const PixelMeans top(field, field.top_m, usual_resolution_cells);
+  const Seen top(field, field.top_m, Vec2{1, 1} * cells_per_pixel, usual_resolution_cells);  // means over pixels
   std::vector<double> bottoms{0};
   for (std::size_t k = 0; k < sent.layers.size(); ++k) bottoms.push_back(bottoms.back() + sent.printer.thickness_m(k));
   std::erase_if(readings.rows, [&](Reading& r) {

@@ -15,6 +15,7 @@ namespace gonio::explain::prints {
 namespace {
 
 using Picture = std::vector<float>;
+constexpr int knots_per_cell = 4;
 
 std::size_t place(int x, int y, int width) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -91,17 +92,29 @@ class Defocus {
   std::vector<print::Spread> spread_;
 };
 
-// The integral of a box of two cells under a Gaussian, from the far left to x; the box is centred on 0.
-double boxed(double x, double sigma) {
+// The integral of a box of this width about 0 under a Gaussian, from the far left to x.
+double boxed(double x, double width, double sigma) {
   const auto ramp = [sigma](double u) {
     if (sigma < 1e-4) return std::max(0.0, u);
     const double z = u / sigma;
     return u * 0.5 * std::erfc(-z / std::numbers::sqrt2) +
            sigma * std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
   };
-  constexpr double half = 0.5 * cells_per_pixel;
-  return (ramp(x + half) - ramp(x - half)) / (2 * half);
+  return (ramp(x + width / 2) - ramp(x - width / 2)) / width;
 }
+
+// Weights of the cells about each of the knots of a cell: those from `-reach` to `reach` beside the one that it is in.
+struct Weights {
+  int reach = 0;
+  std::array<std::vector<double>, knots_per_cell> of;
+  Weights(double width, double sigma) : reach(static_cast<int>(std::ceil(width / 2 + 4 * sigma)) + 1) {
+    for (int k = 0; k < knots_per_cell; ++k) {
+      const double at = static_cast<double>(k) / knots_per_cell;  // in the cell from 0 to 1
+      for (int c = -reach; c <= reach; ++c)
+        of[static_cast<std::size_t>(k)].push_back(boxed(c + 1 - at, width, sigma) - boxed(c - at, width, sigma));
+    }
+  }
+};
 
 }  // namespace
 
@@ -142,32 +155,34 @@ Field printed_field(const Sent& sent, const Setting& setting) {
   return field;
 }
 
-PixelMeans::PixelMeans(const Field& field, const std::vector<double>& values, double resolution_cells)
-    : width_(field.width + 1), height_(field.height + 1) {
+Seen::Seen(const Field& field, const std::vector<double>& values, Vec2 point_cells, double resolution_cells)
+    : width_(field.width * knots_per_cell + 1), height_(field.height * knots_per_cell + 1) {
   const double sigma = std::max(0.0, resolution_cells);
-  const int reach = static_cast<int>(std::ceil(1 + 4 * sigma));
-  std::vector<double> weight;  // of the cells beside a corner, from -reach on
-  for (int c = -reach; c < reach; ++c) weight.push_back(boxed(c + 1, sigma) - boxed(c, sigma));
+  const Weights along(point_cells.x, sigma), down(point_cells.y, sigma);
   std::vector<double> rows(static_cast<std::size_t>(width_) * static_cast<std::size_t>(field.height));
   for (int y = 0; y < field.height; ++y)
     for (int x = 0; x < width_; ++x) {
+      const std::vector<double>& weight = along.of[static_cast<std::size_t>(x % knots_per_cell)];
       double sum = 0;
-      for (int c = -reach; c < reach; ++c)
-        sum += weight[static_cast<std::size_t>(c + reach)] *
-               values[place(std::clamp(x + c, 0, field.width - 1), y, field.width)];
+      for (int c = -along.reach; c <= along.reach; ++c)
+        sum += weight[static_cast<std::size_t>(c + along.reach)] *
+               values[place(std::clamp(x / knots_per_cell + c, 0, field.width - 1), y, field.width)];
       rows[place(x, y, width_)] = sum;
     }
   knot_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  for (int y = 0; y < height_; ++y)
-    for (int c = -reach; c < reach; ++c) {
-      const double w = weight[static_cast<std::size_t>(c + reach)];
-      const int from = std::clamp(y + c, 0, field.height - 1);
+  for (int y = 0; y < height_; ++y) {
+    const std::vector<double>& weight = down.of[static_cast<std::size_t>(y % knots_per_cell)];
+    for (int c = -down.reach; c <= down.reach; ++c) {
+      const double w = weight[static_cast<std::size_t>(c + down.reach)];
+      const int from = std::clamp(y / knots_per_cell + c, 0, field.height - 1);
+      if (w == 0) continue;
       for (int x = 0; x < width_; ++x) knot_[place(x, y, width_)] += w * rows[place(x, from, width_)];
     }
+  }
 }
 
-double PixelMeans::at(double x, double y) const {
-  x = std::clamp(x, 0.0, width_ - 1.000001), y = std::clamp(y, 0.0, height_ - 1.000001);
+double Seen::at(double x, double y) const {
+  x = std::clamp(x * knots_per_cell, 0.0, width_ - 1.000001), y = std::clamp(y * knots_per_cell, 0.0, height_ - 1.000001);
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const double fx = x - i, fy = y - j;
   const double* k = &knot_[place(i, j, width_)];

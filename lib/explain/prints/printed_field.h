@@ -43,15 +43,16 @@ struct Field {  // of cells, row by row from the smallest y
 };
 Field printed_field(const Sent& sent, const Setting& setting);
 
-// Means over a pixel's square, of the field as an instrument sees it whose resolution is a Gaussian (cells); asked for
-// at any place, in cells from the outer corner. Exact for a surface of even cells and a perfect instrument.
-class PixelMeans {
+// The field as an instrument sees it: means over the square that a point of the map stands for, blurred by the
+// instrument's resolution, a Gaussian; lengths in cells, places from the outer corner. Between knots, a quarter of a cell
+// apart, linear.
+class Seen {
  public:
-  PixelMeans(const Field& field, const std::vector<double>& values, double resolution_cells);
+  Seen(const Field& field, const std::vector<double>& values, Vec2 point_cells, double resolution_cells);
   double at(double x_cells, double y_cells) const;
 
  private:
-  int width_ = 0, height_ = 0;  // knots: corners of cells
+  int width_ = 0, height_ = 0;  // knots
   std::vector<double> knot_;
 };
 

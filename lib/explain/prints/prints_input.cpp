@@ -68,7 +68,8 @@ std::unique_ptr<print::ArchiveReader> open_layers(const manifest::Document& docu
     throw Error(Exit::data, manifest::place(document, at), "is missing",
                 "name the archive that was sent, or the first of a folder's numbered PNG files");
   const std::filesystem::path path = manifest::resolve(document, id, at);
-  return print::open_archive(path.extension() == ".png" ? path.parent_path() : path);
+  if (path.extension() != ".png") return print::open_archive(path);
+  return print::open_archive(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
 }
 
 std::vector<std::vector<float>> layers_of(print::ArchiveReader& archive, const print::Printer& printer,

@@ -22,14 +22,14 @@ constexpr double um = 1e6, infinity = std::numeric_limits<double>::infinity();
 constexpr double place_sigma_px = 0.3, most_place_px = 3;
 constexpr double usual_resolution_px = 0.2, resolution_sigma_px = 0.15, coarsest_px = 1;
 constexpr double tilt_sigma = 0.1;
-constexpr std::size_t kept_fields = 96, kept_means = 160;
+constexpr std::size_t kept_fields = 48, kept_seen = 24;
 // Steps of differences, of a parameter's size: tops are floats.
 constexpr double step_of_physics = 2e-2, step_of_maps = 1e-3;
 
 class PrintsProblem final : public Problem {
  public:
   explicit PrintsProblem(PrintsInput input)
-      : input_(std::move(input)), readings_(readings_of(input_)), fields_(kept_fields), means_(kept_means) {
+      : input_(std::move(input)), readings_(readings_of(input_)), fields_(kept_fields), seen_(kept_seen) {
     map_parameters();
     physics_ = parameters_.size();
     for (const Term* term : all_terms()) enter(*term);
@@ -40,15 +40,20 @@ class PrintsProblem final : public Problem {
     const Setting setting = setting_of(values);
     const std::size_t first = observations_.first[group];
     const std::size_t map = readings_.rows[first].map, own = map * numbers_of_a_map;
-    const std::shared_ptr<const PixelMeans> means = means_of(values, setting, values[own + Of::resolution]);
+    const std::shared_ptr<const Seen> seen = seen_by(map, values, setting);
     const Vec2 pixel = input_.sent.printer.pixel_m, cell = pixel * (1.0 / cells_per_pixel);
     const Vec2 shift{values[own + Of::x] * pixel.x, values[own + Of::y] * pixel.y}, centre = input_.sent.centre_m;
     for (std::size_t i = 0; i < prediction.size(); ++i) {
-      const Vec2 at = readings_.rows[first + i].at_m;
-      const Vec2 from = equation::print_shrinkage_undone(at - shift - centre, setting.shrinkage.x, setting.shrinkage.y) +
-                        centre - input_.sent.corner_m;
-      const double z = equation::print_shrinkage(means->at(from.x / cell.x, from.y / cell.y), setting.shrinkage.z);
-      prediction[i] = um * z + values[own + Of::height] + values[own + Of::tilt_x] * um * (at.x - centre.x) +
+      const Reading& reading = readings_.rows[first + i];
+      double z = 0;
+      for (std::uint32_t k = 0; k < reading.points; ++k) {
+        const Vec2 point = readings_.points[reading.first + k] - shift - centre;
+        const Vec2 from = equation::print_shrinkage_undone(point, setting.shrinkage.x, setting.shrinkage.y) + centre -
+                          input_.sent.corner_m;
+        z += seen->at(from.x / cell.x, from.y / cell.y) / reading.points;
+      }
+      const Vec2 at = reading.at_m;
+      prediction[i] = um * equation::print_shrinkage(z, setting.shrinkage.z) + values[own + Of::height] + values[own + Of::tilt_x] * um * (at.x - centre.x) +
                       values[own + Of::tilt_y] * um * (at.y - centre.y);
     }
   }
@@ -101,17 +106,19 @@ class PrintsProblem final : public Problem {
     }
     return setting;
   }
-  std::shared_ptr<const PixelMeans> means_of(std::span<const double> values, const Setting& setting,
-                                             double resolution_px) const {
+  std::shared_ptr<const Seen> seen_by(std::size_t map, std::span<const double> values, const Setting& setting) const {
     std::vector<double> key(values.begin() + static_cast<std::ptrdiff_t>(physics_), values.end());
     for (const PrintUse& use : uses_)  // what acts on places alone makes no other surface
       if (use.term->mechanism == &mechanism::print_shrinkage)
         for (std::size_t k = 0; k < use.neutral.size(); ++k) key[use.first - physics_ + k] = 0;
     std::vector<double> own = key;
-    own.push_back(resolution_px);
-    return means_.at(own, [&] {
+    const double resolution_px = values[map * numbers_of_a_map + Of::resolution];
+    const io::HeightMap& points = input_.maps[map].map;
+    own.insert(own.end(), {resolution_px, points.step_x_m, points.step_y_m});
+    return seen_.at(own, [&] {
       const auto field = fields_.at(key, [&] { return printed_field(input_.sent, setting); });
-      return PixelMeans(*field, field->top_m, resolution_px * cells_per_pixel);
+      const Vec2 point{points.step_x_m / field->cell_m.x, points.step_y_m / field->cell_m.y};
+      return Seen(*field, field->top_m, point, resolution_px * cells_per_pixel);
     });
   }
 
@@ -205,7 +212,7 @@ class PrintsProblem final : public Problem {
   std::vector<PrintUse> uses_;
   std::size_t physics_ = 0;  // the first parameter that is no map's
   Memo<Field> fields_;
-  Memo<PixelMeans> means_;
+  Memo<Seen> seen_;
 };
 
 }  // namespace

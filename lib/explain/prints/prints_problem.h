@@ -1,7 +1,7 @@
 // Maps of a printed surface against the simulation of what was sent to the printer.
 //
-// Observations: mean heights over pixels, um, each with the noise that even fields show from pixel to pixel, and by how
-// much a wall's place is uncertain (0.04 pixel). A score in um. Groups: sixteen patches of each map; blocks of 4 x 4
+// Observations: mean heights over the points of each pixel, um, each with the noise that even fields show from pixel to pixel, and by how
+// much a wall's place is uncertain (0.02 pixel). A score in um. Groups: sixteen patches of each map; blocks of 4 x 4
 // pixels.
 //
 // Base model: what "prints" states of growth, bleed and overcure (print/cure.h); for each map a plane, where it lies (by

@@ -1,0 +1,253 @@
+// explain on prints: what the simulation makes of pictures, and what is found in maps of it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+#include "explain/prints/map_readings.h"
+#include "explain/prints/print_term.h"
+#include "explain/prints/sample.h"
+#include "inference/explanation.h"
+#include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
+#include "manifest/sections/print.h"
+#include "print/mechanisms/print_bleed.h"
+#include "print/mechanisms/print_growth.h"
+#include "print/mechanisms/print_layer_shift.h"
+#include "print/mechanisms/print_membrane.h"
+#include "print/mechanisms/print_overcure.h"
+#include "print/mechanisms/print_pixel_tilt.h"
+#include "print/mechanisms/print_shrinkage.h"
+
+// One process: Answers.*
+
+namespace gonio::explain::tests {
+namespace {
+
+using namespace prints;
+
+TEST(PrintGrowth, IsToldByWhiteThresholdAndCurvature) {
+  const print::GrowthLaw law{19.5e-6, 11e-6, -0.01};
+  const equation::PrintGrowth told = equation::print_growth_of(law);
+  const print::GrowthLaw again = equation::print_growth(told);
+  EXPECT_NEAR(again.alpha_m, law.alpha_m, 1e-12);
+  EXPECT_NEAR(again.beta_m, law.beta_m, 1e-12);
+  EXPECT_NEAR(again.gamma, law.gamma, 1e-9);
+  const print::GrowthLaw straight = equation::print_growth({20e-6, 0, 0});  // in proportion, to a part in a thousand
+  for (const double grey : {0.1, 0.5, 1.0}) EXPECT_NEAR(straight.height_m(grey), grey * 20e-6, 20e-9);
+}
+
+TEST(PrintBleed, SpreadsFollowOneAnother) {
+  const print::Bleed both = equation::print_bleed({3e-5, 0, 0}, 4e-5, 0.1, 2e-4);
+  EXPECT_NEAR(both.sigma_m, 5e-5, 1e-12);
+  EXPECT_DOUBLE_EQ(both.tail_share, 0.1);
+  EXPECT_DOUBLE_EQ(both.tail_m, 2e-4);
+}
+
+TEST(PrintOvercure, FallsToAnEthInItsDepth) {
+  EXPECT_NEAR(equation::print_overcure(2e-5, 2e-5), std::exp(-1), 1e-15);
+  EXPECT_EQ(equation::print_overcure(2e-5, 0), 0);
+}
+
+TEST(PrintPixelTilt, IsSharpAtOneEnd) {
+  EXPECT_EQ(equation::print_pixel_tilt({0, 0.5}, {1, 1}, 0.02, 0), 0);
+  EXPECT_DOUBLE_EQ(equation::print_pixel_tilt({1, 0.5}, {1, 1}, 0.02, 0), 0.02);
+  EXPECT_DOUBLE_EQ(equation::print_pixel_tilt({0.25, 0.5}, {1, 1}, -0.02, 0), 0.015);
+}
+
+TEST(PixelMeans, AreExactForEvenCells) {
+  Field field{.width = 6, .height = 4, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .floor_m = {}, .ceiling_m = {}};
+  for (int i = 0; i < 24; ++i) field.top_m.push_back(i * i % 7);
+  const PixelMeans means(field, field.top_m, 0);
+  const auto cell = [&](int x, int y) { return field.top_m[static_cast<std::size_t>(y * 6 + x)]; };
+  EXPECT_NEAR(means.at(2, 2), (cell(1, 1) + cell(2, 1) + cell(1, 2) + cell(2, 2)) / 4, 1e-12);
+  // A square from x = 1.3 to 3.3 holds 0.7 of the cells of column 1, all of 2 and 0.3 of 3.
+  double sum = 0;
+  for (const int y : {1, 2}) sum += 0.7 * cell(1, y) + cell(2, y) + 0.3 * cell(3, y);
+  EXPECT_NEAR(means.at(2.3, 2), sum / 4, 1e-12);
+  const std::vector<double> level(24, 5.0);
+  EXPECT_NEAR(PixelMeans(field, level, 1.3).at(3.2, 1.7), 5, 1e-12);
+}
+
+TEST(PrintedField, IsWhatGrowsOverTheLayersBelow) {
+  const Sent sent = sample();
+  const Field field = printed_field(sent, stated(sent));
+  // The pixel (11, 3) has grey 0.35 in layer 4 over three white ones, of which none is as thick as its layer.
+  const std::size_t cell = 2 * 3 * static_cast<std::size_t>(field.width) + 2 * 11;
+  EXPECT_NEAR(field.top_m[cell], 60e-6 + sent.printer.growth.height_m(0.35, 20e-6), 1e-10);
+  EXPECT_NEAR(field.ceiling_m[cell], 80e-6, 1e-10);
+}
+
+TEST(PrintedField, IsDisplacedByWholePixels) {
+  const Sent sent = sample();
+  Setting setting = stated(sent);
+  setting.shifted_from = 3, setting.shift_m = {60e-6, 0};
+  Sent moved = sent;
+  for (std::size_t k = 2; k < moved.layers.size(); ++k)
+    for (int y = 0; y < side_px; ++y)
+      for (int x = 0; x < side_px; ++x)
+        moved.layers[k][static_cast<std::size_t>(y * side_px + x)] =
+            x < 2 ? 0 : sent.layers[k][static_cast<std::size_t>(y * side_px + x - 2)];
+  const Field a = printed_field(sent, setting), b = printed_field(moved, stated(moved));
+  for (std::size_t i = 0; i < a.top_m.size(); ++i) EXPECT_NEAR(a.top_m[i], b.top_m[i], 1e-10);
+}
+
+// Far from the rims light is shared out anew, none is made: a field in proportion keeps its mean.
+TEST(PrintedField, OfATiltedProjectorKeepsTheLight) {
+  Sent sent = sample(false);
+  for (std::vector<float>& layer : sent.layers) std::fill(layer.begin(), layer.end(), 0.0f);
+  sent.layers[0].assign(sent.layers[0].size(), 0.0f);
+  sent.layers[0][20 * side_px + 20] = 0.8f;
+  Setting setting = stated(sent);
+  setting.tilt = {1.5 / side_px, 0};  // 1.5 pixels at the far side
+  const Field field = printed_field(sent, setting);
+  double sum = 0, x = 0, xx = 0;
+  for (int j = 0; j < field.height; ++j)
+    for (int i = 0; i < field.width; ++i) {
+      const double z = field.top_m[static_cast<std::size_t>(j * field.width + i)];
+      sum += z, x += z * i, xx += z * i * i;
+    }
+  EXPECT_NEAR(sum, 4 * 0.8 * 20e-6, 1e-9);
+  const double spread_px = std::sqrt(xx / sum - x * x / (sum * sum) - 0.25 - 1.0 / 12) / cells_per_pixel;
+  EXPECT_NEAR(spread_px, 1.5 * 20.5 / 40, 0.05);
+}
+
+TEST(Terms, AreAbsentAtNeutralAndSeenWhereTheirSearchBegins) {
+  const Sent sent = sample();
+  const Field base = printed_field(sent, stated(sent));
+  ASSERT_GE(all_terms().size(), 7U);
+  for (const Term* term : all_terms()) {
+    const mechanism::Mechanism& m = term->mechanism();
+    std::vector<Bounds> bounds;
+    if (term->bounds != nullptr) bounds = term->bounds(sent);
+    else
+      for (const mechanism::Parameter& p : m.parameters) bounds.push_back({p.neutral, p.lower, p.upper, p.start});
+    ASSERT_EQ(bounds.size(), m.parameters.size()) << m.id;
+    const std::vector<Form> forms = term->forms != nullptr ? term->forms(sent) : std::vector<Form>{{}};
+    ASSERT_FALSE(forms.empty()) << m.id;
+    for (const Form& form : forms) {
+      std::vector<double> neutral, start;
+      for (const Bounds& b : bounds) neutral.push_back(b.neutral), start.push_back(b.start);
+      Setting off = stated(sent), on = off;
+      term->set(off, sent, form, neutral);
+      const Field without = printed_field(sent, off);
+      double worst = 0;
+      for (std::size_t i = 0; i < base.top_m.size(); ++i)
+        worst = std::max(worst, std::abs(without.top_m[i] - base.top_m[i]));
+      EXPECT_LT(worst, 1e-9) << m.id;
+      term->set(on, sent, form, start);
+      const Field with = printed_field(sent, on);
+      double change = norm(on.shrinkage) * base.top_m[0];
+      for (std::size_t i = 0; i < base.top_m.size(); ++i)
+        change = std::max(change, std::abs(with.top_m[i] - base.top_m[i]));
+      EXPECT_GT(change, 1e-7) << m.id;
+    }
+  }
+}
+
+TEST(Readings, AreMeansOverPixelsWithTheirNoise) {
+  const Sent sent = sample();
+  const Readings readings = readings_of(measured(sent, stated(sent), 0.4e-6, 3));
+  EXPECT_EQ(readings.rows.size(), static_cast<std::size_t>(side_px * side_px));
+  EXPECT_NEAR(readings.noise_um, 0.2, 0.05);  // of four points
+  for (const Reading& r : readings.rows) EXPECT_LT(r.patch, 16U);
+}
+
+TEST(Readings, RefuseAMapThatShowsTooLittle) {
+  const Sent sent = sample();
+  PrintsInput input = measured(sent, stated(sent), 0.1e-6, 3);
+  for (double& z : input.maps[0].map.z_m) z = std::nan("");
+  try {
+    readings_of(input);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("scene.json#/reliefs/sample: shows 0 pixels of the print"));
+  }
+}
+
+// Derivatives that fits use, against wider differences of predictions.
+TEST(PrintsProblem, DerivativesAreThoseOfPredictions) {
+  const Sent sent = sample();
+  const auto problem = prints_problem(measured(sent, stated(sent), 0.2e-6, 5));
+  std::vector<double> values;
+  for (const auto& p : problem->parameters()) values.push_back(p.neutral);
+  for (const auto& c : problem->candidates())
+    if (c.id() == mechanism::print_growth().id || c.id() == mechanism::print_overcure().id)
+      for (const std::size_t p : c.parameters) values[p] = problem->parameters()[p].start;
+  std::vector<std::size_t> columns = problem->base();
+  for (const auto& c : problem->candidates())
+    if (c.id() == mechanism::print_growth().id) columns.insert(columns.end(), c.parameters.begin(), c.parameters.end());
+  const std::size_t rows = problem->observations().first[6] - problem->observations().first[5];
+  std::vector<double> slopes(rows * columns.size()), above(rows), below(rows);
+  problem->jacobian(values, 5, columns, slopes);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto& p = problem->parameters()[columns[k]];
+    std::vector<double> moved = values;
+    const double step = 0.05 * p.size;
+    moved[columns[k]] = values[columns[k]] + step;
+    problem->predict(moved, 5, above);
+    moved[columns[k]] = values[columns[k]] - step;
+    problem->predict(moved, 5, below);
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double slope = (above[i] - below[i]) / (2 * step);
+      difference += std::pow(slope - slopes[k * rows + i], 2), size += slope * slope;
+    }
+    EXPECT_LT(std::sqrt(difference), 0.05 * std::sqrt(size) + 1e-9) << p.name;
+  }
+}
+
+struct Answer {
+  std::unique_ptr<Problem> problem;
+  Explanation e;
+  std::vector<std::string> named;
+  manifest::Document document;
+};
+Answer explained(const Setting& made, std::uint64_t seed) {
+  Answer a;
+  const Sent sent = sample();
+  a.problem = prints_problem(measured(sent, made, 0.5e-6, seed));
+  a.e = explain(*a.problem, {.negative_controls = 4});
+  for (const std::size_t c : a.e.named) a.named.push_back(a.problem->candidates()[c].id());
+  a.document.prints["p"].layer_m = 20e-6;
+  a.problem->apply(a.e, a.document);
+  return a;
+}
+const Estimate& estimate(const Answer& a, std::size_t k) {
+  return a.e.estimates.at(k);
+}
+
+TEST(Answers, NothingWhereNothingIsLeftOut) {
+  const Answer a = explained(stated(sample()), 11);
+  EXPECT_TRUE(a.named.empty()) << a.e.sentence;
+  EXPECT_FALSE(a.document.prints["p"].growth.has_value());
+}
+
+TEST(Answers, AnotherLampIsAnotherGrowth) {
+  Setting made = stated(sample());
+  made.printer.growth = print::Growth(print::GrowthLaw{19.5e-6 + 11e-6 * std::log(0.8), 11e-6, -0.01});
+  const Answer a = explained(made, 12);
+  ASSERT_THAT(a.named, testing::ElementsAre(mechanism::print_growth().id)) << a.e.sentence;
+  ASSERT_TRUE(a.document.prints["p"].growth.has_value());
+  const manifest::PrintGrowth& growth = *a.document.prints["p"].growth;
+  EXPECT_NEAR(growth.alpha_m, 19.5e-6 + 11e-6 * std::log(0.8), 4 * growth.sigma.at("alpha_m")[0]);
+  EXPECT_LT(growth.sigma.at("alpha_m")[0], 0.5e-6);
+}
+
+TEST(Answers, ASlippedPlatformIsFoundWithItsLayer) {
+  Setting made = stated(sample());
+  made.shifted_from = 4, made.shift_m = {20e-6, -12e-6};
+  const Answer a = explained(made, 13);
+  ASSERT_THAT(a.named, testing::ElementsAre(mechanism::print_layer_shift().id)) << a.e.sentence;
+  EXPECT_NEAR(estimate(a, 0).value, 20e-6, 4 * estimate(a, 0).sigma);
+  EXPECT_NEAR(estimate(a, 1).value, -12e-6, 4 * estimate(a, 1).sigma);
+  const manifest::MechanismUse& use = a.document.mechanisms.at(mechanism::print_layer_shift().id);
+  EXPECT_EQ(use.parameters.at("layer").value.at(0), 4);
+  EXPECT_EQ(use.on, std::vector<std::string>{"p"});
+}
+
+}  // namespace
+}  // namespace gonio::explain::tests
