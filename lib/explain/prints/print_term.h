@@ -30,6 +30,8 @@ struct Term {
   std::vector<Bounds> (*bounds)(const Sent& sent) = nullptr;
   // `p`: all parameters of the declaration, in order.
   void (*set)(Setting& setting, const Sent& sent, const Form& form, std::span<const double> p) = nullptr;
+  double step = 2e-2;    // of differences, of a parameter's size
+  bool gradual = false;  // Candidate::gradual
   // Into the printer's own section, which has a place for it; null: it becomes a mechanism in use. `covariance`: of p,
   // row by row.
   void (*write)(manifest::Print& print, const Sent& sent, std::span<const double> p,

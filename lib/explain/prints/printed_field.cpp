@@ -118,7 +118,39 @@ struct Weights {
 
 }  // namespace
 
-Field printed_field(const Sent& sent, const Setting& setting) {
+print::Spread spread_of(const Sent& sent, const print::Bleed& bleed) {
+  return print::Spread(bleed, sent.printer.pixel_m * (1.0 / cells_per_pixel), sent.wide() * cells_per_pixel,
+                       sent.high() * cells_per_pixel);
+}
+
+Lights lights_of(const Sent& sent, const Setting& setting, const print::Spread& spread) {
+  const int width = sent.wide() * cells_per_pixel, height = sent.high() * cells_per_pixel;
+  const Vec2 cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
+  std::unique_ptr<Defocus> defocus;
+  if (setting.tilt.x != 0 || setting.tilt.y != 0)
+    defocus = std::make_unique<Defocus>(setting, sent, cell_m, width, height);
+  Lights lights;
+  for (std::size_t k = 0; k < sent.layers.size(); ++k) {
+    const Vec2 by = setting.shifted_from > 0
+                        ? equation::print_layer_shift(static_cast<double>(k + 1), setting.shifted_from,
+                                                      setting.shift_m.x, setting.shift_m.y)
+                        : Vec2{0, 0};
+    const bool moves = by.x != 0 || by.y != 0;
+    if (k > 0 && !moves && sent.layers[k] == sent.layers[k - 1]) {  // as layers are for the most part
+      lights.push_back(lights.back());
+      continue;
+    }
+    Picture light = in_cells(sent.layers[k], sent);
+    if (moves) light = moved(light, width, height, {by.x / cell_m.x, by.y / cell_m.y});
+    if (defocus) light = (*defocus)(light);
+    Picture all(light.size());
+    spread(light, all);
+    lights.push_back(std::move(all));
+  }
+  return lights;
+}
+
+Field grown(const Sent& sent, const Setting& setting, const Lights& lights) {
   Field field;
   field.width = sent.wide() * cells_per_pixel, field.height = sent.high() * cells_per_pixel;
   field.corner_m = sent.corner_m;
@@ -126,24 +158,11 @@ Field printed_field(const Sent& sent, const Setting& setting) {
   print::Printer fine = setting.printer;
   fine.pixel_m = field.cell_m;
   fine.width_px *= cells_per_pixel, fine.height_px *= cells_per_pixel;
-  const print::PixelBox box{0, 0, field.width, field.height};
-  print::Cure cure(fine, box);
-  std::unique_ptr<Defocus> defocus;
-  if (setting.tilt.x != 0 || setting.tilt.y != 0)
-    defocus = std::make_unique<Defocus>(setting, sent, field.cell_m, field.width, field.height);
+  fine.bleed = {};  // which is in the light
+  print::Cure cure(fine, {0, 0, field.width, field.height});
   std::vector<double> bottom{0};
-  for (std::size_t k = 0; k < sent.layers.size(); ++k) bottom.push_back(bottom.back() + fine.thickness_m(k));
-  for (std::size_t k = sent.layers.size(); k-- > 0;) {
-    Picture light = in_cells(sent.layers[k], sent);
-    const Vec2 by = setting.shifted_from > 0
-                        ? equation::print_layer_shift(static_cast<double>(k + 1), setting.shifted_from,
-                                                      setting.shift_m.x, setting.shift_m.y)
-                        : Vec2{0, 0};
-    if (by.x != 0 || by.y != 0)
-      light = moved(light, field.width, field.height, {by.x / field.cell_m.x, by.y / field.cell_m.y});
-    if (defocus) light = (*defocus)(light);
-    cure.add(light, bottom[k], bottom[k + 1]);
-  }
+  for (std::size_t k = 0; k < lights.size(); ++k) bottom.push_back(bottom.back() + fine.thickness_m(k));
+  for (std::size_t k = lights.size(); k-- > 0;) cure.add(lights[k], bottom[k], bottom[k + 1]);
   const print::CuredSurface& surface = cure.surface();
   const auto finite = [](float v) { return std::isfinite(v) ? static_cast<double>(v) : 0.0; };
   for (std::size_t i = 0; i < surface.top_m.size(); ++i) {
@@ -153,6 +172,10 @@ Field printed_field(const Sent& sent, const Setting& setting) {
                                             : top);
   }
   return field;
+}
+
+Field printed_field(const Sent& sent, const Setting& setting) {
+  return grown(sent, setting, lights_of(sent, setting, spread_of(sent, setting.printer.bleed)));
 }
 
 Seen::Seen(const Field& field, const std::vector<double>& values, Vec2 point_cells, double resolution_cells)

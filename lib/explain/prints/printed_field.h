@@ -41,7 +41,12 @@ struct Field {  // of cells, row by row from the smallest y
   std::vector<double> floor_m;    // of the layer that is seen
   std::vector<double> ceiling_m;
 };
-Field printed_field(const Sent& sent, const Setting& setting);
+// The light of every layer on the cells, from the platform up; and what it makes. Few settings change the first.
+using Lights = std::vector<std::vector<float>>;
+print::Spread spread_of(const Sent& sent, const print::Bleed& bleed);
+Lights lights_of(const Sent& sent, const Setting& setting, const print::Spread& spread);
+Field grown(const Sent& sent, const Setting& setting, const Lights& lights);
+Field printed_field(const Sent& sent, const Setting& setting);  // of all three
 
 // The field as an instrument sees it: means over the square that a point of the map stands for, blurred by the
 // instrument's resolution, a Gaussian; lengths in cells, places from the outer corner. Between knots, a quarter of a cell

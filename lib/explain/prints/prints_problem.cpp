@@ -22,14 +22,14 @@ constexpr double um = 1e6, infinity = std::numeric_limits<double>::infinity();
 constexpr double place_sigma_px = 0.3, most_place_px = 3;
 constexpr double usual_resolution_px = 0.2, resolution_sigma_px = 0.15, coarsest_px = 1;
 constexpr double tilt_sigma = 0.1;
-constexpr std::size_t kept_fields = 48, kept_seen = 24;
-// Steps of differences, of a parameter's size: tops are floats.
-constexpr double step_of_physics = 2e-2, step_of_maps = 1e-3;
+constexpr std::size_t kept_lights = 24, kept_fields = 48, kept_seen = 24;
+constexpr double step_of_maps = 1e-3;  // of differences, of a parameter's size; physics: Term::step
 
 class PrintsProblem final : public Problem {
  public:
   explicit PrintsProblem(PrintsInput input)
-      : input_(std::move(input)), readings_(readings_of(input_)), fields_(kept_fields), seen_(kept_seen) {
+      : input_(std::move(input)), readings_(readings_of(input_)), spreads_(kept_lights),
+        lights_(kept_lights), fields_(kept_fields), seen_(kept_seen) {
     map_parameters();
     physics_ = parameters_.size();
     for (const Term* term : all_terms()) enter(*term);
@@ -64,7 +64,7 @@ class PrintsProblem final : public Problem {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const Parameter& p = parameters_[columns[k]];
       const double centre = values[columns[k]],
-                   step = (columns[k] < physics_ ? step_of_maps : step_of_physics) * p.size;
+                   step = (columns[k] < physics_ ? step_of_maps : use_of(columns[k]).term->step) * p.size;
       const double upper = std::min(centre + step, std::max(p.upper, centre)),
                    lower = std::max(centre - step, std::min(p.lower, centre));
       moved[columns[k]] = upper;
@@ -106,6 +106,19 @@ class PrintsProblem final : public Problem {
     }
     return setting;
   }
+  Field field_of(const Setting& setting) const {
+    const print::Bleed& bleed = setting.printer.bleed;
+    const std::vector<double> spread{bleed.sigma_m, bleed.tail_share, bleed.tail_m};
+    std::vector<double> key{setting.shifted_from, setting.shift_m.x, setting.shift_m.y, setting.tilt.x, setting.tilt.y};
+    key.insert(key.end(), spread.begin(), spread.end());
+    const auto lights = lights_.at(key, [&] {
+      return lights_of(input_.sent, setting, *spreads_.at(spread, [&] { return spread_of(input_.sent, bleed); }));
+    });
+    return grown(input_.sent, setting, *lights);
+  }
+  const PrintUse& use_of(std::size_t parameter) const {
+    return *(std::ranges::upper_bound(uses_, parameter, {}, &PrintUse::first) - 1);
+  }
   std::shared_ptr<const Seen> seen_by(std::size_t map, std::span<const double> values, const Setting& setting) const {
     std::vector<double> key(values.begin() + static_cast<std::ptrdiff_t>(physics_), values.end());
     for (const PrintUse& use : uses_)  // what acts on places alone makes no other surface
@@ -116,7 +129,7 @@ class PrintsProblem final : public Problem {
     const io::HeightMap& points = input_.maps[map].map;
     own.insert(own.end(), {resolution_px, points.step_x_m, points.step_y_m});
     return seen_.at(own, [&] {
-      const auto field = fields_.at(key, [&] { return printed_field(input_.sent, setting); });
+      const auto field = fields_.at(key, [&] { return field_of(setting); });
       const Vec2 point{points.step_x_m / field->cell_m.x, points.step_y_m / field->cell_m.y};
       return Seen(*field, field->top_m, point, resolution_px * cells_per_pixel);
     });
@@ -169,6 +182,7 @@ class PrintsProblem final : public Problem {
     const std::string of = form.on.empty() ? "" : form.on + ".";
     Candidate candidate{&m, {}, {}, several ? m.id : std::string(), form.finer};
     if (!form.on.empty()) candidate.on = {form.on};
+    candidate.gradual = term.gradual;
     for (std::size_t k = 0; k < m.parameters.size(); ++k) {
       const mechanism::Parameter& info = m.parameters[k];
       const Bounds& b = bounds[k];
@@ -211,6 +225,8 @@ class PrintsProblem final : public Problem {
   Readings readings_;
   std::vector<PrintUse> uses_;
   std::size_t physics_ = 0;  // the first parameter that is no map's
+  Memo<print::Spread> spreads_;
+  Memo<Lights> lights_;
   Memo<Field> fields_;
   Memo<Seen> seen_;
 };

@@ -48,7 +48,8 @@ const Term& print_layer_shift() {
           [](Setting& setting, const Sent&, const Form& form, std::span<const double> p) {
             setting.shifted_from = form.held;
             setting.shift_m = {p[0], p[1]};
-          }};
+          },
+      .gradual = true};
   return term;
 }
 
