@@ -1,5 +1,6 @@
 // Simulated surfaces that were asked for lately: every patch of a print asks for the same one.
 #pragma once
+#include <algorithm>
 #include <deque>
 #include <future>
 #include <memory>
@@ -21,9 +22,11 @@ class Memo {
     std::shared_future<std::shared_ptr<const Value>> future;
     {
       const std::lock_guard lock(mutex_);
-      for (const auto& [known, value] : kept_)
-        if (known == key) future = value;
-      if (!future.valid()) {
+      const auto found = std::ranges::find(kept_, key, &Kept::first);
+      if (found != kept_.end()) {
+        future = found->second;
+        std::rotate(kept_.begin(), found, found + 1);
+      } else {
         kept_.emplace_front(key, promise.get_future().share());
         if (kept_.size() > most_) kept_.pop_back();
       }
@@ -42,7 +45,8 @@ class Memo {
  private:
   std::size_t most_;
   mutable std::mutex mutex_;
-  mutable std::deque<std::pair<std::vector<double>, std::shared_future<std::shared_ptr<const Value>>>> kept_;
+  using Kept = std::pair<std::vector<double>, std::shared_future<std::shared_ptr<const Value>>>;
+  mutable std::deque<Kept> kept_;  // the latest first
 };
 
 }  // namespace gonio::explain::prints

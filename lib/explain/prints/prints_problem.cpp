@@ -22,13 +22,14 @@ constexpr double um = 1e6, infinity = std::numeric_limits<double>::infinity();
 constexpr double place_sigma_px = 0.3, most_place_px = 3;
 constexpr double usual_resolution_px = 0.2, resolution_sigma_px = 0.15, coarsest_px = 1;
 constexpr double tilt_sigma = 0.1;
-constexpr std::size_t kept_lights = 24, kept_fields = 48, kept_seen = 24;
+constexpr std::size_t kept_predictions = 512, kept_lights = 64, kept_fields = 32, kept_seen = 8;
 constexpr double step_of_maps = 1e-3;  // of differences, of a parameter's size; physics: Term::step
 
 class PrintsProblem final : public Problem {
  public:
   explicit PrintsProblem(PrintsInput input)
-      : input_(std::move(input)), readings_(readings_of(input_)), spreads_(kept_lights),
+      : input_(std::move(input)), readings_(readings_of(input_)), predicted_(kept_predictions),
+        spreads_(kept_lights),
         lights_(kept_lights), fields_(kept_fields), seen_(kept_seen) {
     map_parameters();
     physics_ = parameters_.size();
@@ -37,25 +38,9 @@ class PrintsProblem final : public Problem {
   }
 
   void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
-    const Setting setting = setting_of(values);
-    const std::size_t first = observations_.first[group];
-    const std::size_t map = readings_.rows[first].map, own = map * numbers_of_a_map;
-    const std::shared_ptr<const Seen> seen = seen_by(map, values, setting);
-    const Vec2 pixel = input_.sent.printer.pixel_m, cell = pixel * (1.0 / cells_per_pixel);
-    const Vec2 shift{values[own + Of::x] * pixel.x, values[own + Of::y] * pixel.y}, centre = input_.sent.centre_m;
-    for (std::size_t i = 0; i < prediction.size(); ++i) {
-      const Reading& reading = readings_.rows[first + i];
-      double z = 0;
-      for (std::uint32_t k = 0; k < reading.points; ++k) {
-        const Vec2 point = readings_.points[reading.first + k] - shift - centre;
-        const Vec2 from = equation::print_shrinkage_undone(point, setting.shrinkage.x, setting.shrinkage.y) + centre -
-                          input_.sent.corner_m;
-        z += seen->at(from.x / cell.x, from.y / cell.y) / reading.points;
-      }
-      const Vec2 at = reading.at_m;
-      prediction[i] = um * equation::print_shrinkage(z, setting.shrinkage.z) + values[own + Of::height] + values[own + Of::tilt_x] * um * (at.x - centre.x) +
-                      values[own + Of::tilt_y] * um * (at.y - centre.y);
-    }
+    const auto all = predicted_.at({values.begin(), values.end()}, [&] { return predicted(values); });
+    const auto first = all->begin() + static_cast<std::ptrdiff_t>(observations_.first[group]);
+    std::copy_n(first, prediction.size(), prediction.begin());
   }
   void jacobian(std::span<const double> values, std::size_t group, std::span<const std::size_t> columns,
                 std::span<double> derivatives) const override {
@@ -105,6 +90,30 @@ class PrintsProblem final : public Problem {
       if (!std::ranges::equal(p, use.neutral)) use.term->set(setting, input_.sent, use.form, p);
     }
     return setting;
+  }
+  // Of all rows: one surface serves all patches.
+  std::vector<double> predicted(std::span<const double> values) const {
+    const Setting setting = setting_of(values);
+    std::vector<std::shared_ptr<const Seen>> seen;
+    for (std::size_t m = 0; m < input_.maps.size(); ++m) seen.push_back(seen_by(m, values, setting));
+    const Vec2 pixel = input_.sent.printer.pixel_m, cell = pixel * (1.0 / cells_per_pixel);
+    const Vec2 centre = input_.sent.centre_m;
+    std::vector<double> prediction;
+    for (const Reading& reading : readings_.rows) {
+      const std::size_t own = reading.map * numbers_of_a_map;
+      const Vec2 shift{values[own + Of::x] * pixel.x, values[own + Of::y] * pixel.y};
+      double z = 0;
+      for (std::uint32_t k = 0; k < reading.points; ++k) {
+        const Vec2 point = readings_.points[reading.first + k] - shift - centre;
+        const Vec2 from = equation::print_shrinkage_undone(point, setting.shrinkage.x, setting.shrinkage.y) + centre -
+                          input_.sent.corner_m;
+        z += seen[reading.map]->at(from.x / cell.x, from.y / cell.y) / reading.points;
+      }
+      const Vec2 at = reading.at_m - centre;
+      prediction.push_back(um * equation::print_shrinkage(z, setting.shrinkage.z) + values[own + Of::height] +
+                           um * (values[own + Of::tilt_x] * at.x + values[own + Of::tilt_y] * at.y));
+    }
+    return prediction;
   }
   Field field_of(const Setting& setting) const {
     const print::Bleed& bleed = setting.printer.bleed;
@@ -225,6 +234,7 @@ class PrintsProblem final : public Problem {
   Readings readings_;
   std::vector<PrintUse> uses_;
   std::size_t physics_ = 0;  // the first parameter that is no map's
+  Memo<std::vector<double>> predicted_;
   Memo<print::Spread> spreads_;
   Memo<Lights> lights_;
   Memo<Field> fields_;
