@@ -47,6 +47,13 @@ Picture moved(const Picture& from, int width, int height, Vec2 by) {
   return to;
 }
 
+// Spread has the light in the middle of a cell, and a cell counts as even: its mean is the middle of light that is
+// spread a little further, by the variance of a cell. Less where light is spread by less than that.
+print::Bleed over_cells(print::Bleed bleed, Vec2 cell_m) {
+  bleed.sigma_m = std::hypot(bleed.sigma_m, std::min(bleed.sigma_m, std::sqrt(cell_m.x * cell_m.y / 12)));
+  return bleed;
+}
+
 // Spreads that differ over the field: light is shared out between a few even ones, so that its variance is right.
 class Defocus {
  public:
@@ -66,7 +73,7 @@ class Defocus {
     for (std::size_t k = 0; k < levels; ++k) {
       const double s = most * static_cast<double>(k) / (levels - 1);
       level_.push_back(s * s);
-      spread_.emplace_back(print::Bleed{s, 0, 0}, cell_m, width, height);
+      spread_.emplace_back(over_cells({s, 0, 0}, cell_m), cell_m, width, height);
     }
   }
   Picture operator()(const Picture& light) const {
@@ -119,7 +126,8 @@ struct Weights {
 }  // namespace
 
 print::Spread spread_of(const Sent& sent, const print::Bleed& bleed) {
-  return print::Spread(bleed, sent.printer.pixel_m * (1.0 / cells_per_pixel), sent.wide() * cells_per_pixel,
+  const Vec2 cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
+  return print::Spread(over_cells(bleed, cell_m), cell_m, sent.wide() * cells_per_pixel,
                        sent.high() * cells_per_pixel);
 }
 

@@ -68,6 +68,8 @@ class PrintsProblem final : public Problem {
   std::string group_noun() const override { return "patch"; }
   Importance importance() const override { return Importance::share_of_residual; }
   double fit_tolerance() const override { return 1e-6; }
+  // A grey value that just cures, or does not, moves the surface by a whole layer.
+  bool sets_outliers_aside() const override { return true; }
 
   std::string remarks(const Explanation&) const override { return prints_remarks(input_, readings_); }
   void apply(const Explanation& e, manifest::Document& document) const override {

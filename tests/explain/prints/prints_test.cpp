@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/error.h"
 #include "explain/prints/map_readings.h"
@@ -58,10 +57,10 @@ TEST(PrintPixelTilt, IsSharpAtOneEnd) {
   EXPECT_DOUBLE_EQ(equation::print_pixel_tilt({0.25, 0.5}, {1, 1}, -0.02, 0), 0.015);
 }
 
-TEST(PixelMeans, AreExactForEvenCells) {
+TEST(Seen, IsExactForEvenCellsBetweenKnots) {
   Field field{.width = 6, .height = 4, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .floor_m = {}, .ceiling_m = {}};
   for (int i = 0; i < 24; ++i) field.top_m.push_back(i * i % 7);
-  const PixelMeans means(field, field.top_m, 0);
+  const Seen means(field, field.top_m, {2, 2}, 0);
   const auto cell = [&](int x, int y) { return field.top_m[static_cast<std::size_t>(y * 6 + x)]; };
   EXPECT_NEAR(means.at(2, 2), (cell(1, 1) + cell(2, 1) + cell(1, 2) + cell(2, 2)) / 4, 1e-12);
   // A square from x = 1.3 to 3.3 holds 0.7 of the cells of column 1, all of 2 and 0.3 of 3.
@@ -69,7 +68,16 @@ TEST(PixelMeans, AreExactForEvenCells) {
   for (const int y : {1, 2}) sum += 0.7 * cell(1, y) + cell(2, y) + 0.3 * cell(3, y);
   EXPECT_NEAR(means.at(2.3, 2), sum / 4, 1e-12);
   const std::vector<double> level(24, 5.0);
-  EXPECT_NEAR(PixelMeans(field, level, 1.3).at(3.2, 1.7), 5, 1e-12);
+  EXPECT_NEAR(Seen(field, level, {0.7, 0.7}, 1.3).at(3.2, 1.7), 5, 1e-12);
+}
+
+// A step under a Gaussian is the normal law.
+TEST(Seen, BlursByItsResolution) {
+  Field field{.width = 40, .height = 3, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .floor_m = {}, .ceiling_m = {}};
+  for (int i = 0; i < 120; ++i) field.top_m.push_back(i % 40 < 20 ? 0 : 1);
+  const Seen seen(field, field.top_m, {0.01, 0.01}, 2);
+  for (const double x : {17.0, 19.5, 20.0, 22.25})
+    EXPECT_NEAR(seen.at(x, 1.5), 0.5 * std::erfc((20 - x) / (2 * std::sqrt(2.0))), 1e-4) << x;
 }
 
 TEST(PrintedField, IsWhatGrowsOverTheLayersBelow) {
@@ -223,7 +231,7 @@ const Estimate& estimate(const Answer& a, std::size_t k) {
 TEST(Answers, NothingWhereNothingIsLeftOut) {
   const Answer a = explained(stated(sample()), 11);
   EXPECT_TRUE(a.named.empty()) << a.e.sentence;
-  EXPECT_FALSE(a.document.prints["p"].growth.has_value());
+  EXPECT_FALSE(a.document.prints.at("p").growth.has_value());
 }
 
 TEST(Answers, AnotherLampIsAnotherGrowth) {
@@ -231,8 +239,8 @@ TEST(Answers, AnotherLampIsAnotherGrowth) {
   made.printer.growth = print::Growth(print::GrowthLaw{19.5e-6 + 11e-6 * std::log(0.8), 11e-6, -0.01});
   const Answer a = explained(made, 12);
   ASSERT_THAT(a.named, testing::ElementsAre(mechanism::print_growth().id)) << a.e.sentence;
-  ASSERT_TRUE(a.document.prints["p"].growth.has_value());
-  const manifest::PrintGrowth& growth = *a.document.prints["p"].growth;
+  ASSERT_TRUE(a.document.prints.at("p").growth.has_value());
+  const manifest::PrintGrowth& growth = *a.document.prints.at("p").growth;
   EXPECT_NEAR(growth.alpha_m, 19.5e-6 + 11e-6 * std::log(0.8), 4 * growth.sigma.at("alpha_m")[0]);
   EXPECT_LT(growth.sigma.at("alpha_m")[0], 0.5e-6);
 }
