@@ -52,7 +52,8 @@ const std::vector<Field<PrintedPart>>& printed_part_fields() {
 const std::vector<Field<MeasuredPrint>>& measured_print_fields() {
   static const std::vector<Field<MeasuredPrint>> table{
       field("relief", &MeasuredPrint::relief, "", "the map: name in reliefs").needed(),
-      field("at_m", &MeasuredPrint::at_m, "m", "where its first point, of the uppermost row, lies on the platform [x, y]")
+      field("at_m", &MeasuredPrint::at_m, "m",
+            "where its first point, of the uppermost row, lies on the platform [x, y]")
           .needed(),
       field("turn_rad", &MeasuredPrint::turn_rad, "rad", "of its rows about z, on the platform")};
   return table;
@@ -78,7 +79,8 @@ const std::vector<Field<Print>>& print_fields() {
       field("relief", &Print::relief, "", "the predicted surface, seen from the projector: name in reliefs"),
       field("mesh", &Print::mesh, "", "the predicted part: name in meshes"),
       field("surface", &Print::surface, "", "how it reflects: name in surfaces"),
-      field("measured", &Print::measured, "", "maps of what was printed, heights from any plane; explain(1) asks them")};
+      field("measured", &Print::measured, "",
+            "maps of what was printed, heights from any plane; explain(1) asks them")};
   return table;
 }
 

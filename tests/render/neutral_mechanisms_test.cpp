@@ -51,8 +51,8 @@ bool concerns_pictures(const Mechanism& m) {
   // Acts through columns, height maps, tracks, volumes or clouds, which no picture has, or on glass and prints, which
   // are not here: what is traced is written into the surfaces themselves.
   const bool tables_alone = !m.domains.empty() && std::ranges::all_of(m.domains, [](const std::string& domain) {
-    return domain == "tables" || domain == "heights" || domain == "nrsfm" || domain == "volumes" || domain == "prints" ||
-           domain == "clouds" || domain == "traced";
+    return domain == "tables" || domain == "heights" || domain == "nrsfm" || domain == "volumes" ||
+           domain == "prints" || domain == "clouds" || domain == "traced";
   });
   return lens || is_for("images") || !(is_for("boards") || is_for("robot") || tables_alone);
 }

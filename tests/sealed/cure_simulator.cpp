@@ -47,9 +47,8 @@ std::vector<double> moved(const std::vector<double>& field, int side, double dx,
     for (int x = 0; x < side; ++x) {
       const double u = x - dx, v = y - dy, fx = u - std::floor(u), fy = v - std::floor(v);
       const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
-      result[static_cast<std::size_t>(y * side + x)] =
-          (1 - fy) * ((1 - fx) * value(i, j) + fx * value(i + 1, j)) +
-          fy * ((1 - fx) * value(i, j + 1) + fx * value(i + 1, j + 1));
+      result[static_cast<std::size_t>(y * side + x)] = (1 - fy) * ((1 - fx) * value(i, j) + fx * value(i + 1, j)) +
+                                                       fy * ((1 - fx) * value(i, j + 1) + fx * value(i + 1, j + 1));
     }
   return result;
 }

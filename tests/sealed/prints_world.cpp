@@ -55,9 +55,10 @@ class Prints final : public World {
     add({"lamp", "print.growth", stage, {"print.grey"}, 0.12, 0.4}).of_either_sign().values = [this](const Numbers& s) {
       const double f = std::exp(s[0]), k0 = 1 / (law_.threshold() - law_.gamma);
       if (states_no_law_) return std::vector<TrueValue>{};
-      return std::vector<TrueValue>{{"print.growth", "white", law_.beta * s[0] / law_.height(1)},
-                                    {"print.growth", "threshold", (1 / f - 1) / k0},
-                                    {"print.growth", "curvature", (f - 1) * k0}};
+      // Of the law that is fitted to the wedge: nearly what the simulator has.
+      return std::vector<TrueValue>{{"print.growth", "white", law_.beta * s[0] / law_.height(1), false},
+                                    {"print.growth", "threshold", (1 / f - 1) / k0, false},
+                                    {"print.growth", "curvature", (f - 1) * k0, false}};
     };
     add({"spread light", "print.bleed", stage, {"print.neighbours", "print.edge"}, 0.35, 0.9}).values =
         [this](const Numbers& s) {
@@ -122,7 +123,8 @@ class Prints final : public World {
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
         const auto i = static_cast<std::size_t>(y * side + x);
-        columns[0][i] = 1e-6, columns[1][i] = 1e-6 * (x - side / 2) / side, columns[2][i] = 1e-6 * (y - side / 2) / side;
+        columns[0][i] = 1e-6, columns[1][i] = 1e-6 * (x - side / 2) / side,
+        columns[2][i] = 1e-6 * (y - side / 2) / side;
         if (x > 0 && x + 1 < side) columns[3][i] = z[i + 1] - z[i - 1];
         if (y > 0 && y + 1 < side) columns[4][i] = z[i + side] - z[i - side];
       }
@@ -181,12 +183,11 @@ class Prints final : public World {
     print["pixel_m"] = Value(std::vector<double>{pixel_m_, pixel_m_});
     print["layers"] = "layer0001";
     if (!states_no_law_)
-      print["growth"] = Value::object(
-          {{"alpha_m", law_.alpha * layer_m_}, {"beta_m", law_.beta * layer_m_}, {"gamma", law_.gamma}});
+      print["growth"] =
+          Value::object({{"alpha_m", law_.alpha * layer_m_}, {"beta_m", law_.beta * layer_m_}, {"gamma", law_.gamma}});
     const double first = -0.5 * side_px * pixel_m_ + (margin + 0.5) * step_m;
     Value map = Value::object({{"relief", "sample"}});
-    map["at_m"] = Value(std::vector<double>{first + misplaced_px_[0] * pixel_m_,
-                                            -first + misplaced_px_[1] * pixel_m_});
+    map["at_m"] = Value(std::vector<double>{first + misplaced_px_[0] * pixel_m_, -first + misplaced_px_[1] * pixel_m_});
     print["measured"] = Value::array();
     print["measured"].as_array().push_back(map);
     m["prints"]["p"] = print;
@@ -201,7 +202,8 @@ class Prints final : public World {
       c.core_px = core, c.tail_share = tail_, c.tail_px = tail_px_;
     c.stays = sizes.contains("light through layers");
     if (const double slip = size_of(sizes, "slipped layer"); slip > 0)
-      c.shifted_from = slips_at_, c.shift_x_px = slip * std::cos(direction_), c.shift_y_px = slip * std::sin(direction_);
+      c.shifted_from = slips_at_, c.shift_x_px = slip * std::cos(direction_),
+      c.shift_y_px = slip * std::sin(direction_);
     c.bulge = size_of(sizes, "pressed membrane");
     c.defocus_px = size_of(sizes, "tilted projector"), c.defocus_side = far_side_;
     c.side_oxygen = size_of(sizes, "oxygen from the sides");

@@ -21,8 +21,9 @@ const Domain& prints() {
       .untouched = {
           {"surface.", "a map of heights says nothing of what light does on the surface"},
           {"light.", "the projector's light is what was sent; what it does to resin is print.growth and print.bleed"},
-          {"optics.", "what the projector's lens does is print.bleed and print.pixel-tilt; the instrument's resolution "
-                      "is free"},
+          {"optics.",
+           "what the projector's lens does is print.bleed and print.pixel-tilt; the instrument's resolution "
+           "is free"},
           {"sensor.", "a height map has heights and no grey levels"},
           {"scene.", "nothing moves between recordings"},
           {"transport.", "light between layers is print.overcure"},
@@ -30,8 +31,9 @@ const Domain& prints() {
           {"reference.", "the reference is what was sent, and no white tile"},
           {"ground.", "a height map has no light and no rims"},
           {"mask.", "a height map has no light and no rims"},
-          {"geometry.", "what a print shows of it has the names print.shrinkage and print.layer-shift; where a map lies "
-                        "is free"},
+          {"geometry.",
+           "what a print shows of it has the names print.shrinkage and print.layer-shift; where a map lies "
+           "is free"},
           {"lens.", "a height map has been rectified by its instrument"},
           {"camera.", "a height map has no camera"},
           {"board.", "a print is no board of corners"},

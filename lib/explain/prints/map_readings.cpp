@@ -100,8 +100,8 @@ void look_up(const Sent& sent, const Field& field, Readings& readings) {
     r.height_um = um * here, r.below_top_um = um * (ceiling - here);
     const auto layer = std::ranges::lower_bound(bottoms, ceiling - 1e-3 * sent.printer.layer_m);
     r.layer = static_cast<int>(layer - bottoms.begin());
-    const std::size_t pixel = static_cast<std::size_t>(r.y_px) * static_cast<std::size_t>(sent.wide()) +
-                              static_cast<std::size_t>(r.x_px);
+    const std::size_t pixel =
+        static_cast<std::size_t>(r.y_px) * static_cast<std::size_t>(sent.wide()) + static_cast<std::size_t>(r.x_px);
     r.grey = static_cast<double>(sent.layers[static_cast<std::size_t>(r.layer - 1)][pixel]);
     return false;
   });
@@ -114,11 +114,12 @@ double noise_of(const Readings& readings, double layer_um) {
   std::vector<double> level, all;
   for (const Reading& r : readings.rows)
     for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
-      const auto before = at.find({r.map, r.x_px - dx, r.y_px - dy}), after = at.find({r.map, r.x_px + dx, r.y_px + dy});
+      const auto before = at.find({r.map, r.x_px - dx, r.y_px - dy}),
+                 after = at.find({r.map, r.x_px + dx, r.y_px + dy});
       if (before == at.end() || after == at.end()) continue;
       const Reading &a = *before->second, &b = *after->second;
-      const double d = std::abs((a.z_um - a.height_um) - 2 * (r.z_um - r.height_um) + (b.z_um - b.height_um)) /
-                       std::sqrt(6.0);
+      const double d =
+          std::abs((a.z_um - a.height_um) - 2 * (r.z_um - r.height_um) + (b.z_um - b.height_um)) / std::sqrt(6.0);
       all.push_back(d);
       const auto is_level = [&](const Reading& q) {
         return std::max({std::abs(q.slope_x), std::abs(q.slope_y), std::abs(q.bend)}) < even * layer_um;

@@ -9,9 +9,9 @@ namespace gonio::explain::prints {
 
 struct Reading {
   std::size_t map = 0;
-  Vec2 at_m{};                 // mean place of its points, on the platform
+  Vec2 at_m{};                          // mean place of its points, on the platform
   std::uint32_t first = 0, points = 0;  // in Readings::points
-  int x_px = 0, y_px = 0;      // of the pixel, from the first of the box
+  int x_px = 0, y_px = 0;               // of the pixel, from the first of the box
   double z_um = 0, sigma_um = 0;
   std::uint32_t patch = 0, tile = 0;  // of its map: one of sixteen; 4 x 4 pixels
   // Of the simulation as stated: slopes (um for each pixel), what bends (um for each pixel squared), the layer that is
@@ -20,8 +20,8 @@ struct Reading {
   int layer = 0;
 };
 struct Readings {
-  std::vector<Reading> rows;  // by map, patch, tile
-  std::vector<Vec2> points;   // places on the platform
+  std::vector<Reading> rows;       // by map, patch, tile
+  std::vector<Vec2> points;        // places on the platform
   std::size_t without_points = 0;  // pixels of which a third was not measured
   double noise_um = 0;             // of one reading, on even fields
 };

@@ -15,9 +15,9 @@ namespace gonio::explain::prints {
 // held.
 struct Form {
   std::vector<std::string> parameters;
-  bool finer = false;    // Candidate::finer
-  std::string on = {};   // of several: which, in words
-  double held = 0;       // what is not fitted: the layer
+  bool finer = false;   // Candidate::finer
+  std::string on = {};  // of several: which, in words
+  double held = 0;      // what is not fitted: the layer
 };
 struct Bounds {  // of a parameter, for this printer
   double neutral = 0, lower = 0, upper = 0, start = 0;

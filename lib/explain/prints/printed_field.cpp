@@ -30,20 +30,12 @@ Picture in_cells(const Picture& pixels, const Sent& sent) {
   return cells;
 }
 
-// What of a picture that lies `by` cells further falls on each cell; beyond it it is dark.
-Picture moved(const Picture& from, int width, int height, Vec2 by) {
-  Picture to(from.size());
-  const auto value = [&](int x, int y) {
-    return x < 0 || y < 0 || x >= width || y >= height ? 0.0 : static_cast<double>(from[place(x, y, width)]);
-  };
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const double u = x - by.x, v = y - by.y;
-      const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
-      const double fx = u - i, fy = v - j;
-      to[place(x, y, width)] = static_cast<float>((1 - fy) * ((1 - fx) * value(i, j) + fx * value(i + 1, j)) +
-                                                  fy * ((1 - fx) * value(i, j + 1) + fx * value(i + 1, j + 1)));
-    }
+// A picture that lies whole cells further; beyond it it is dark.
+Picture moved(const Picture& from, int width, int height, int by_x, int by_y) {
+  Picture to(from.size(), 0.0f);
+  for (int y = std::max(0, by_y); y < std::min(height, height + by_y); ++y)
+    for (int x = std::max(0, by_x); x < std::min(width, width + by_x); ++x)
+      to[place(x, y, width)] = from[place(x - by_x, y - by_y, width)];
   return to;
 }
 
@@ -117,46 +109,15 @@ struct Weights {
   Weights(double width, double sigma) : reach(static_cast<int>(std::ceil(width / 2 + 4 * sigma)) + 1) {
     for (int k = 0; k < knots_per_cell; ++k) {
       const double at = static_cast<double>(k) / knots_per_cell;  // in the cell from 0 to 1
+      std::vector<double>& weights = of[static_cast<std::size_t>(k)];
       for (int c = -reach; c <= reach; ++c)
-        of[static_cast<std::size_t>(k)].push_back(boxed(c + 1 - at, width, sigma) - boxed(c - at, width, sigma));
+        weights.push_back(boxed(c + 1 - at, width, sigma) - boxed(c - at, width, sigma));
+      double all = 0;
+      for (const double w : weights) all += w;
+      for (double& w : weights) w /= all;
     }
   }
 };
-
-}  // namespace
-
-print::Spread spread_of(const Sent& sent, const print::Bleed& bleed) {
-  const Vec2 cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
-  return print::Spread(over_cells(bleed, cell_m), cell_m, sent.wide() * cells_per_pixel,
-                       sent.high() * cells_per_pixel);
-}
-
-Lights lights_of(const Sent& sent, const Setting& setting, const print::Spread& spread) {
-  const int width = sent.wide() * cells_per_pixel, height = sent.high() * cells_per_pixel;
-  const Vec2 cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
-  std::unique_ptr<Defocus> defocus;
-  if (setting.tilt.x != 0 || setting.tilt.y != 0)
-    defocus = std::make_unique<Defocus>(setting, sent, cell_m, width, height);
-  Lights lights;
-  for (std::size_t k = 0; k < sent.layers.size(); ++k) {
-    const Vec2 by = setting.shifted_from > 0
-                        ? equation::print_layer_shift(static_cast<double>(k + 1), setting.shifted_from,
-                                                      setting.shift_m.x, setting.shift_m.y)
-                        : Vec2{0, 0};
-    const bool moves = by.x != 0 || by.y != 0;
-    if (k > 0 && !moves && sent.layers[k] == sent.layers[k - 1]) {  // as layers are for the most part
-      lights.push_back(lights.back());
-      continue;
-    }
-    Picture light = in_cells(sent.layers[k], sent);
-    if (moves) light = moved(light, width, height, {by.x / cell_m.x, by.y / cell_m.y});
-    if (defocus) light = (*defocus)(light);
-    Picture all(light.size());
-    spread(light, all);
-    lights.push_back(std::move(all));
-  }
-  return lights;
-}
 
 Field grown(const Sent& sent, const Setting& setting, const Lights& lights) {
   Field field;
@@ -182,8 +143,67 @@ Field grown(const Sent& sent, const Setting& setting, const Lights& lights) {
   return field;
 }
 
+}  // namespace
+
+print::Spread spread_of(const Sent& sent, const print::Bleed& bleed) {
+  const Vec2 cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
+  return print::Spread(over_cells(bleed, cell_m), cell_m, sent.wide() * cells_per_pixel, sent.high() * cells_per_pixel);
+}
+
+Lights lights_of(const Sent& sent, const Setting& setting, const print::Spread& spread) {
+  const int width = sent.wide() * cells_per_pixel, height = sent.high() * cells_per_pixel;
+  const Vec2 cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
+  std::unique_ptr<Defocus> defocus;
+  if (setting.tilt.x != 0 || setting.tilt.y != 0)
+    defocus = std::make_unique<Defocus>(setting, sent, cell_m, width, height);
+  Lights lights;
+  for (std::size_t k = 0; k < sent.layers.size(); ++k) {
+    const Vec2 by = setting.shifted_from > 0
+                        ? equation::print_layer_shift(static_cast<double>(k + 1), setting.shifted_from,
+                                                      setting.shift_m.x, setting.shift_m.y)
+                        : Vec2{0, 0};
+    const bool moves = by.x != 0 || by.y != 0;
+    if (k > 0 && !moves && sent.layers[k] == sent.layers[k - 1]) {  // as layers are for the most part
+      lights.push_back(lights.back());
+      continue;
+    }
+    Picture light = in_cells(sent.layers[k], sent);
+    if (moves)
+      light = moved(light, width, height, static_cast<int>(std::lround(by.x / cell_m.x)),
+                    static_cast<int>(std::lround(by.y / cell_m.y)));
+    if (defocus) light = (*defocus)(light);
+    Picture all(light.size());
+    spread(light, all);
+    lights.push_back(std::move(all));
+  }
+  return lights;
+}
+
+Field printed_field(const Sent& sent, const Setting& setting, const LightsOf& lights_of) {
+  if (!(setting.shifted_from > 0)) return grown(sent, setting, *lights_of(setting));
+  const Vec2 cell_m = sent.printer.pixel_m * (1.0 / cells_per_pixel);
+  const Vec2 by{setting.shift_m.x / cell_m.x, setting.shift_m.y / cell_m.y}, whole{std::floor(by.x), std::floor(by.y)},
+      part = by - whole;
+  Field field;
+  std::vector<double> top_m;
+  for (const auto& [x, y] : {std::pair{0, 0}, std::pair{1, 0}, std::pair{0, 1}, std::pair{1, 1}}) {
+    const double weight = (x == 0 ? 1 - part.x : part.x) * (y == 0 ? 1 - part.y : part.y);
+    if (weight == 0 && !top_m.empty()) continue;
+    Setting own = setting;
+    own.shift_m = {(whole.x + x) * cell_m.x, (whole.y + y) * cell_m.y};
+    Field one = grown(sent, own, *lights_of(own));
+    if (top_m.empty()) top_m.assign(one.top_m.size(), 0.0);
+    for (std::size_t i = 0; i < top_m.size(); ++i) top_m[i] += weight * one.top_m[i];
+    if (field.top_m.empty()) field = std::move(one);
+  }
+  field.top_m = std::move(top_m);
+  return field;
+}
+
 Field printed_field(const Sent& sent, const Setting& setting) {
-  return grown(sent, setting, lights_of(sent, setting, spread_of(sent, setting.printer.bleed)));
+  return printed_field(sent, setting, [&sent](const Setting& own) {
+    return std::make_shared<const Lights>(lights_of(sent, own, spread_of(sent, own.printer.bleed)));
+  });
 }
 
 Seen::Seen(const Field& field, const std::vector<double>& values, Vec2 point_cells, double resolution_cells)
@@ -213,7 +233,8 @@ Seen::Seen(const Field& field, const std::vector<double>& values, Vec2 point_cel
 }
 
 double Seen::at(double x, double y) const {
-  x = std::clamp(x * knots_per_cell, 0.0, width_ - 1.000001), y = std::clamp(y * knots_per_cell, 0.0, height_ - 1.000001);
+  x = std::clamp(x * knots_per_cell, 0.0, width_ - 1.000001),
+  y = std::clamp(y * knots_per_cell, 0.0, height_ - 1.000001);
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const double fx = x - i, fy = y - j;
   const double* k = &knot_[place(i, j, width_)];

@@ -3,6 +3,7 @@
 //
 // Frame of the platform (manifest/sections/print.h), metres. Heights over the platform.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -36,21 +37,23 @@ inline Setting stated(const Sent& sent) {
 
 struct Field {  // of cells, row by row from the smallest y
   int width = 0, height = 0;
-  Vec2 corner_m{}, cell_m{};      // outer corner
-  std::vector<double> top_m;      // 0 where nothing is solid
-  std::vector<double> floor_m;    // of the layer that is seen
+  Vec2 corner_m{}, cell_m{};    // outer corner
+  std::vector<double> top_m;    // 0 where nothing is solid
+  std::vector<double> floor_m;  // of the layer that is seen
   std::vector<double> ceiling_m;
 };
-// The light of every layer on the cells, from the platform up; and what it makes. Few settings change the first.
+// The light of every layer on the cells, from the platform up; and what it makes. Few settings change the first. Layers
+// are displaced by whole cells: by parts of a cell, areas are, and heights of the surfaces of whole ones are averaged.
 using Lights = std::vector<std::vector<float>>;
 print::Spread spread_of(const Sent& sent, const print::Bleed& bleed);
 Lights lights_of(const Sent& sent, const Setting& setting, const print::Spread& spread);
-Field grown(const Sent& sent, const Setting& setting, const Lights& lights);
-Field printed_field(const Sent& sent, const Setting& setting);  // of all three
+using LightsOf = std::function<std::shared_ptr<const Lights>(const Setting&)>;
+Field printed_field(const Sent& sent, const Setting& setting, const LightsOf& lights_of);
+Field printed_field(const Sent& sent, const Setting& setting);
 
 // The field as an instrument sees it: means over the square that a point of the map stands for, blurred by the
-// instrument's resolution, a Gaussian; lengths in cells, places from the outer corner. Between knots, a quarter of a cell
-// apart, linear.
+// instrument's resolution, a Gaussian; lengths in cells, places from the outer corner. Between knots, a quarter of a
+// cell apart, linear.
 class Seen {
  public:
   Seen(const Field& field, const std::vector<double>& values, Vec2 point_cells, double resolution_cells);

@@ -19,9 +19,8 @@ double neighbours(const Sent& sent, const Reading& r) {
       const int x = r.x_px + dx, y = r.y_px + dy;
       if ((dx == 0 && dy == 0) || x < 0 || y < 0 || x >= sent.wide() || y >= sent.high()) continue;
       const double weight = 1.0 / (dx * dx + dy * dy);
-      sum += weight * static_cast<double>(
-                          picture[static_cast<std::size_t>(y) * static_cast<std::size_t>(sent.wide()) +
-                                  static_cast<std::size_t>(x)]);
+      sum += weight * static_cast<double>(picture[static_cast<std::size_t>(y) * static_cast<std::size_t>(sent.wide()) +
+                                                  static_cast<std::size_t>(x)]);
       count += weight;
     }
   return count > 0 ? sum / count - r.grey : 0;
@@ -29,8 +28,8 @@ double neighbours(const Sent& sent, const Reading& r) {
 
 // Light of later layers that goes through those between, each of which keeps half of it.
 double later_light(const Sent& sent, const Reading& r) {
-  const std::size_t pixel = static_cast<std::size_t>(r.y_px) * static_cast<std::size_t>(sent.wide()) +
-                            static_cast<std::size_t>(r.x_px);
+  const std::size_t pixel =
+      static_cast<std::size_t>(r.y_px) * static_cast<std::size_t>(sent.wide()) + static_cast<std::size_t>(r.x_px);
   double sum = 0, share = 0.5;
   for (std::size_t k = static_cast<std::size_t>(r.layer); k < sent.layers.size(); ++k, share *= 0.5)
     sum += share * static_cast<double>(sent.layers[k][pixel]);
@@ -55,12 +54,18 @@ std::vector<Condition> print_conditions(const PrintsInput& input, const Readings
   const auto x = [&](const Reading& r) { return (r.at_m.x - sent.centre_m.x) / pixel.x; };
   const auto y = [&](const Reading& r) { return (r.at_m.y - sent.centre_m.y) / pixel.y; };
   const auto layer = [](const Reading& r) { return static_cast<double>(r.layer); };
-  add("print.grey", "1", "um", [](const Reading& r) { return r.grey; }, one);
-  add("print.below-top", "um", "um", [](const Reading& r) { return r.below_top_um; }, one);
-  add("print.neighbours", "1", "um", [&](const Reading& r) { return neighbours(sent, r); }, one);
-  add("print.edge", "um", "um", [](const Reading& r) { return std::hypot(r.slope_x, r.slope_y); }, one);
-  add("print.later-light", "1", "um", [&](const Reading& r) { return later_light(sent, r); }, one);
-  add("print.height", "um", "um", [](const Reading& r) { return r.height_um; }, one);
+  add(
+      "print.grey", "1", "um", [](const Reading& r) { return r.grey; }, one);
+  add(
+      "print.below-top", "um", "um", [](const Reading& r) { return r.below_top_um; }, one);
+  add(
+      "print.neighbours", "1", "um", [&](const Reading& r) { return neighbours(sent, r); }, one);
+  add(
+      "print.edge", "um", "um", [](const Reading& r) { return std::hypot(r.slope_x, r.slope_y); }, one);
+  add(
+      "print.later-light", "1", "um", [&](const Reading& r) { return later_light(sent, r); }, one);
+  add(
+      "print.height", "um", "um", [](const Reading& r) { return r.height_um; }, one);
   add("print.layer", "1", "um", layer, one);
   add("print.slope-x", "1", "px", layer, slope_x);
   add("print.slope-y", "1", "px", layer, slope_y);

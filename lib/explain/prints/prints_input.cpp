@@ -16,7 +16,7 @@
 namespace gonio::explain {
 namespace {
 
-constexpr int beside_px = 8;      // of light that reaches the maps
+constexpr int beside_px = 8;  // of light that reaches the maps
 constexpr int most_pixels = 512 * 512;
 
 PrintedMap map_of(const manifest::Document& document, const manifest::MeasuredPrint& measured) {
@@ -50,9 +50,9 @@ print::PixelBox box_of(const print::Printer& printer, const std::vector<PrintedM
                             pixel(most.x, grid.corner_m.x, grid.pixel_m.x, beside_px + 1, grid.width_px),
                             pixel(most.y, grid.corner_m.y, grid.pixel_m.y, beside_px + 1, grid.height_px)};
   if (box.empty() || most.x < grid.corner_m.x || most.y < grid.corner_m.y)
-    throw Error(Exit::data, place + "/measured/0/at_m", "puts the map beside the projector's picture",
-                format("the picture reaches from %.4g, %.4g m to the opposite of that", grid.corner_m.x,
-                       grid.corner_m.y));
+    throw Error(
+        Exit::data, place + "/measured/0/at_m", "puts the map beside the projector's picture",
+        format("the picture reaches from %.4g, %.4g m to the opposite of that", grid.corner_m.x, grid.corner_m.y));
   if (static_cast<long>(box.x_end - box.x_begin) * (box.y_end - box.y_begin) > most_pixels)
     throw Error(Exit::data, place + "/measured",
                 format("covers %d x %d pixels, and explain takes at most 512 x 512", box.x_end - box.x_begin,
@@ -76,10 +76,10 @@ std::vector<std::vector<float>> layers_of(print::ArchiveReader& archive, const p
                                           const print::PixelBox& box) {
   const int width = archive.job().width_px, height = archive.job().height_px;
   if (width != printer.width_px || height != printer.height_px)
-    throw Error(Exit::data, printer.place + "/layers",
-                format("has pictures of %d x %d pixels, the print %d x %d", width, height, printer.width_px,
-                       printer.height_px),
-                "name what was sent to this printer");
+    throw Error(
+        Exit::data, printer.place + "/layers",
+        format("has pictures of %d x %d pixels, the print %d x %d", width, height, printer.width_px, printer.height_px),
+        "name what was sent to this printer");
   std::vector<std::uint8_t> picture(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::vector<std::vector<float>> layers;
   for (std::size_t k = 0; k < archive.layers(); ++k) {
@@ -87,8 +87,10 @@ std::vector<std::vector<float>> layers_of(print::ArchiveReader& archive, const p
     std::vector<float>& layer = layers.emplace_back();
     for (int y = box.y_begin; y < box.y_end; ++y)
       for (int x = box.x_begin; x < box.x_end; ++x)
-        layer.push_back(static_cast<float>(picture[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                                   static_cast<std::size_t>(x)]) / 255);
+        layer.push_back(
+            static_cast<float>(
+                picture[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]) /
+            255);
   }
   return layers;
 }
@@ -148,7 +150,8 @@ std::vector<std::filesystem::path> prints_files(const manifest::Document& docume
   std::vector<std::filesystem::path> files;
   for (const auto& [name, print] : document.prints) {
     if (print.measured.empty()) continue;
-    if (!print.layers.empty()) files.push_back(manifest::resolve(document, print.layers, "/prints/" + name + "/layers"));
+    if (!print.layers.empty())
+      files.push_back(manifest::resolve(document, print.layers, "/prints/" + name + "/layers"));
     for (const manifest::MeasuredPrint& measured : print.measured)
       files.push_back(manifest::resolve(document, document.reliefs.at(measured.relief).file,
                                         "/reliefs/" + measured.relief + "/file"));

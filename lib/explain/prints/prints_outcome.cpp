@@ -34,15 +34,15 @@ std::string squares_svg(const PrintsInput& input, const Readings& readings, std:
 }  // namespace
 
 std::string prints_remarks(const PrintsInput& input, const Readings& readings) {
-  std::string text = format("%zu pixels of %zu %s were read; their heights have a noise of %.2g um", readings.rows.size(),
-                            input.maps.size(), input.maps.size() == 1 ? "map" : "maps", readings.noise_um);
+  std::string text =
+      format("%zu pixels of %zu %s were read; their heights have a noise of %.2g um", readings.rows.size(),
+             input.maps.size(), input.maps.size() == 1 ? "map" : "maps", readings.noise_um);
   if (readings.without_points > 0)
     text += format("; %zu had too few points, beside steep walls for the most part", readings.without_points);
   return text + ".";
 }
 
-void upgrade_print(const PrintsInput& input, const PrintUse& use, const Explanation& e,
-                   manifest::Document& document) {
+void upgrade_print(const PrintsInput& input, const PrintUse& use, const Explanation& e, manifest::Document& document) {
   const std::size_t count = use.neutral.size();
   std::vector<std::ptrdiff_t> at;  // in the covariance; -1: not fitted
   bool active = false;
@@ -71,7 +71,7 @@ void upgrade_print(const PrintsInput& input, const PrintUse& use, const Explanat
   const auto place = static_cast<std::size_t>(std::ranges::find(entry.on, input.name) - entry.on.begin());
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double>&value = entry.parameters[m.parameters[k].name].value,
-                       &sigma = entry.sigma[m.parameters[k].name];
+    &sigma = entry.sigma[m.parameters[k].name];
     value.resize(entry.on.size()), sigma.resize(entry.on.size());
     value[place] = at[k] < 0 && use.form.held != 0 ? use.form.held : p[k];
     sigma[place] = e.sigma[use.first + k];
@@ -82,9 +82,9 @@ Illustration illustrate_prints(const PrintsInput& input, const Readings& reading
   Illustration result;
   const double scale = 5 * readings.noise_um;
   for (std::size_t m = 0; m < input.maps.size(); ++m) {
-    result.pictures.push_back({format("%s: heights less the simulation as stated; red: %+.2g um",
-                                      input.maps[m].relief.c_str(), scale),
-                               "", squares_svg(input, readings, m, e.residual_before, scale)});
+    result.pictures.push_back(
+        {format("%s: heights less the simulation as stated; red: %+.2g um", input.maps[m].relief.c_str(), scale), "",
+         squares_svg(input, readings, m, e.residual_before, scale)});
     if (!e.named.empty())
       result.pictures.push_back({input.maps[m].relief + ": the same with the named physics", "",
                                  squares_svg(input, readings, m, e.residual_after, scale)});

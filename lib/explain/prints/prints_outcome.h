@@ -1,4 +1,5 @@
-// What surrounds the prints problem: conditions of its rows, words, the upgraded manifest, pictures. Private to prints/.
+// What surrounds the prints problem: conditions of its rows, words, the upgraded manifest, pictures. Private to
+// prints/.
 #pragma once
 #include <string>
 #include <vector>

@@ -28,9 +28,13 @@ constexpr double step_of_maps = 1e-3;  // of differences, of a parameter's size;
 class PrintsProblem final : public Problem {
  public:
   explicit PrintsProblem(PrintsInput input)
-      : input_(std::move(input)), readings_(readings_of(input_)), predicted_(kept_predictions),
+      : input_(std::move(input)),
+        readings_(readings_of(input_)),
+        predicted_(kept_predictions),
         spreads_(kept_lights),
-        lights_(kept_lights), fields_(kept_fields), seen_(kept_seen) {
+        lights_(kept_lights),
+        fields_(kept_fields),
+        seen_(kept_seen) {
     map_parameters();
     physics_ = parameters_.size();
     for (const Term* term : all_terms()) enter(*term);
@@ -118,14 +122,15 @@ class PrintsProblem final : public Problem {
     return prediction;
   }
   Field field_of(const Setting& setting) const {
-    const print::Bleed& bleed = setting.printer.bleed;
-    const std::vector<double> spread{bleed.sigma_m, bleed.tail_share, bleed.tail_m};
-    std::vector<double> key{setting.shifted_from, setting.shift_m.x, setting.shift_m.y, setting.tilt.x, setting.tilt.y};
-    key.insert(key.end(), spread.begin(), spread.end());
-    const auto lights = lights_.at(key, [&] {
-      return lights_of(input_.sent, setting, *spreads_.at(spread, [&] { return spread_of(input_.sent, bleed); }));
+    return printed_field(input_.sent, setting, [this](const Setting& own) {
+      const print::Bleed& bleed = own.printer.bleed;
+      const std::vector<double> spread{bleed.sigma_m, bleed.tail_share, bleed.tail_m};
+      std::vector<double> key{own.shifted_from, own.shift_m.x, own.shift_m.y, own.tilt.x, own.tilt.y};
+      key.insert(key.end(), spread.begin(), spread.end());
+      return lights_.at(key, [&] {
+        return lights_of(input_.sent, own, *spreads_.at(spread, [&] { return spread_of(input_.sent, bleed); }));
+      });
     });
-    return grown(input_.sent, setting, *lights);
   }
   const PrintUse& use_of(std::size_t parameter) const {
     return *(std::ranges::upper_bound(uses_, parameter, {}, &PrintUse::first) - 1);
@@ -177,7 +182,8 @@ class PrintsProblem final : public Problem {
     for (const mechanism::Parameter& p : m.parameters) all.push_back(p.name);
     std::vector<Form> forms = term.forms != nullptr ? term.forms(input_.sent) : std::vector<Form>{{all, false}};
     std::vector<Bounds> bounds;
-    if (term.bounds != nullptr) bounds = term.bounds(input_.sent);
+    if (term.bounds != nullptr)
+      bounds = term.bounds(input_.sent);
     else
       for (const mechanism::Parameter& p : m.parameters) bounds.push_back({p.neutral, p.lower, p.upper, p.start});
     if (given != input_.given.end()) {
@@ -213,7 +219,9 @@ class PrintsProblem final : public Problem {
     if (given == input_.given.end()) candidates_.push_back(std::move(candidate));
     uses_.push_back(std::move(use));
   }
-  static double size_of(const Bounds& b) { return std::max(std::abs(b.start - b.neutral), 0.005 * (b.upper - b.lower)); }
+  static double size_of(const Bounds& b) {
+    return std::max(std::abs(b.start - b.neutral), 0.005 * (b.upper - b.lower));
+  }
 
   void observe() {
     Observations& o = observations_;

@@ -1,12 +1,12 @@
 // Maps of a printed surface against the simulation of what was sent to the printer.
 //
-// Observations: mean heights over the points of each pixel, um, each with the noise that even fields show from pixel to pixel, and by how
-// much a wall's place is uncertain (0.02 pixel). A score in um. Groups: sixteen patches of each map; blocks of 4 x 4
-// pixels.
+// Observations: mean heights over the points of each pixel, um, each with the noise that even fields show from pixel to
+// pixel, and by how much a wall's place is uncertain (0.02 pixel). A score in um. Groups: sixteen patches of each map;
+// blocks of 4 x 4 pixels.
 //
-// Base model: what "prints" states of growth, bleed and overcure (print/cure.h); for each map a plane, where it lies (by
-// some tenths of a pixel) and the instrument's lateral resolution. Hypotheses: print.* (explain/prints/terms), one file
-// each.
+// Base model: what "prints" states of growth, bleed and overcure (print/cure.h); for each map a plane, where it lies
+// (by some tenths of a pixel) and the instrument's lateral resolution. Hypotheses: print.* (explain/prints/terms), one
+// file each.
 //
 // Frame of the platform (manifest/sections/print.h), metres.
 #pragma once

@@ -16,8 +16,8 @@ namespace gonio::manifest {
 struct PrintGrowth {  // how high a voxel grows by the grey value (print/growth.h)
   double alpha_m = 0, beta_m = 0, gamma = 0;
   Sigmas sigma;
-  std::vector<double> covariance;           // 3 x 3 of alpha, beta, gamma
-  std::vector<double> greys, heights_m;     // where the law fails: what was measured, rising
+  std::vector<double> covariance;        // 3 x 3 of alpha, beta, gamma
+  std::vector<double> greys, heights_m;  // where the law fails: what was measured, rising
   std::optional<double> lack_of_fit_p, rms_m;
   std::optional<std::int64_t> repetitions;  // of the gradient that it was fitted to
 };

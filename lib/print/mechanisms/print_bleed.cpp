@@ -8,11 +8,13 @@ const Mechanism& print_bleed() {
       .id = "print.bleed",
       .sentence = "Light of a pixel reaches its neighbours, through the projector's lens and scattered by the resin.",
       .typical = "0.5 to 3 pixels, with a tail that holds 5 to 30 % of the light",
-      .equation = "L = K * I: K(r) = (1 - tail_share) exp(-r^2 / (2 sigma_m^2)) / (2 pi sigma_m^2) + tail_share (1 + "
-                  "r^2 / tail_m^2)^(-3/2) / (2 pi tail_m^2), over the pixels' squares; stated and found spreads follow "
-                  "one another",
-      .source = "Luongo et al. 2020, section 4; Moffat, Astronomy & Astrophysics 3 "
-                "(1969) 455",
+      .equation =
+          "L = K * I: K(r) = (1 - tail_share) exp(-r^2 / (2 sigma_m^2)) / (2 pi sigma_m^2) + tail_share (1 + "
+          "r^2 / tail_m^2)^(-3/2) / (2 pi tail_m^2), over the pixels' squares; stated and found spreads follow "
+          "one another",
+      .source =
+          "Luongo et al. 2020, section 4; Moffat, Astronomy & Astrophysics 3 "
+          "(1969) 455",
       .stage = "print",
       .target = Target::scene,
       .domains = {"prints"},

@@ -12,7 +12,8 @@ const Mechanism& print_growth() {
       .typical = "thresholds of 0.1 to 0.3; lamps that have aged by 10 to 30 %",
       .equation =
           "h(I) = alpha + beta log(I - gamma) = H log(1 + k (I - I0)) / log(1 + k (1 - I0)), where H is (1 + white) "
-          "times, I0 threshold and k curvature more than what is stated; in proportion to the grey value: k = 0, I0 = 0",
+          "times, I0 threshold and k curvature more than what is stated; in proportion to the grey value: k = 0, I0 = "
+          "0",
       .source = "Jacobs, Rapid Prototyping & Manufacturing, 1992, chapter 4; Luongo et al. 2020, equation 1",
       .stage = "print",
       .target = Target::scene,

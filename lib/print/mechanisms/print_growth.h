@@ -13,7 +13,8 @@ const Mechanism& print_growth();
 namespace gonio::equation {
 
 // alpha + beta log(I - gamma), told by the height of white, the darkest grey that cures and the curvature
-// k = 1 / (threshold - gamma): h = white log(1 + k (I - threshold)) / log(1 + k (1 - threshold)). In proportion: k -> 0.
+// k = 1 / (threshold - gamma): h = white log(1 + k (I - threshold)) / log(1 + k (1 - threshold)). In proportion: k ->
+// 0.
 struct PrintGrowth {
   double white_m = 0, threshold = 0, curvature = 0;
 };

@@ -8,10 +8,12 @@ const Mechanism& print_overcure() {
       .id = "print.overcure",
       .sentence = "Light of later layers goes through them and cures those before on.",
       .typical = "10 to 100 um depth of penetration",
-      .equation = "G_k = L_k + exp(-t / overcure_m) G_(k+1): G all the light of a layer, L that of its own picture, t "
-                  "the thickness of the layer above",
-      .source = "Jacobs, Rapid Prototyping & Manufacturing, 1992, chapter 4 (print-through); Gong et al., RSC Advances "
-                "5 (2015) 106621, equation 2",
+      .equation =
+          "G_k = L_k + exp(-t / overcure_m) G_(k+1): G all the light of a layer, L that of its own picture, t "
+          "the thickness of the layer above",
+      .source =
+          "Jacobs, Rapid Prototyping & Manufacturing, 1992, chapter 4 (print-through); Gong et al., RSC Advances "
+          "5 (2015) 106621, equation 2",
       .stage = "print",
       .target = Target::scene,
       .domains = {"prints"},

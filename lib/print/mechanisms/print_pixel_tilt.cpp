@@ -8,9 +8,12 @@ const Mechanism& print_pixel_tilt() {
       .id = "print.pixel-tilt",
       .sentence = "The projector is out of focus towards one side of its field: the blur grows with the place.",
       .typical = "0.5 to 2 pixels at the far side",
-      .equation = "standard deviation of the spread: |slope_x| times the distance from the side x = 0 (slope_x > 0) or "
-                  "from the opposite one, and the same along y",
-      .source = "Scheimpflug, GB patent 1196 (1904): the plane of focus of a tilted field; a blur that grows linearly with defocus",
+      .equation =
+          "standard deviation of the spread: |slope_x| times the distance from the side x = 0 (slope_x > 0) or "
+          "from the opposite one, and the same along y",
+      .source =
+          "Scheimpflug, GB patent 1196 (1904): the plane of focus of a tilted field; a blur that grows linearly with "
+          "defocus",
       .stage = "print",
       .target = Target::scene,
       .domains = {"prints"},

@@ -37,7 +37,8 @@ const Mechanism& print_shrinkage() {
       .conditions = {"print.size-x", "print.size-y", "print.height"},
       .mistaken_for = {{.with = "print.growth", .told_apart = "steps of whole layers"},
                        {.with = "print.layer-shift", .told_apart = "patterns on several layers, far from each other"},
-                       {.with = "the instrument's scale", .told_apart = "measure a step and a grid that are certified"}},
+                       {.with = "the instrument's scale",
+                        .told_apart = "measure a step and a grid that are certified"}},
   };
   return declaration;
 }

@@ -34,7 +34,8 @@ const Term& print_bleed() {
             entry.sigma["sigma_m"] = {all.sigma_m > 0 ? p[0] / all.sigma_m * std::sqrt(covariance[0]) : 0};
             if (all.tail_share > 0) {
               entry.tail_share = all.tail_share, entry.tail_m = all.tail_m;
-              entry.sigma["tail_share"] = {std::sqrt(covariance[4])}, entry.sigma["tail_m"] = {std::sqrt(covariance[8])};
+              entry.sigma["tail_share"] = {std::sqrt(covariance[4])},
+              entry.sigma["tail_m"] = {std::sqrt(covariance[8])};
             }
             print.bleed = std::move(entry);
           }};

@@ -65,10 +65,8 @@ const Term& print_growth() {
                 {0, -0.1 - told.threshold, 0.8 - told.threshold, 0.03},
                 {0, equation::straightest - told.curvature, 60, std::max(0.5, 0.1 * told.curvature)}};
           },
-      .set =
-          [](Setting& setting, const Sent& sent, const Form&, std::span<const double> p) {
-            setting.printer.growth = print::Growth(law_of(sent, p));
-          },
+      .set = [](Setting& setting, const Sent& sent, const Form&,
+                std::span<const double> p) { setting.printer.growth = print::Growth(law_of(sent, p)); },
       // Greys that cease to cure are as many as a step is wide: they tell how high the law stands over the plane.
       .step = 0.5,
       .gradual = true,

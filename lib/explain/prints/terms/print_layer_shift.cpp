@@ -24,8 +24,7 @@ std::vector<Form> forms_of(const Sent& sent) {
   bool below = false;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (static_cast<double>(seen[k]) < fewest_cells * static_cast<double>(field.top_m.size())) continue;
-    if (below)
-      forms.push_back({{"x_m", "y_m"}, false, "layer " + std::to_string(k + 1), static_cast<double>(k + 1)});
+    if (below) forms.push_back({{"x_m", "y_m"}, false, "layer " + std::to_string(k + 1), static_cast<double>(k + 1)});
     below = true;
   }
   return forms;
@@ -34,22 +33,21 @@ std::vector<Form> forms_of(const Sent& sent) {
 }  // namespace
 
 const Term& print_layer_shift() {
-  static const Term term{
-      .mechanism = mechanism::print_layer_shift,
-      .forms = forms_of,
-      .bounds =
-          [](const Sent& sent) {
-            const Vec2 pixel = sent.printer.pixel_m;
-            return std::vector<Bounds>{{0, -4 * pixel.x, 4 * pixel.x, 0.1 * pixel.x},
-                                       {0, -4 * pixel.y, 4 * pixel.y, 0.1 * pixel.y},
-                                       {0, 0, 1e6, 0}};
-          },
-      .set =
-          [](Setting& setting, const Sent&, const Form& form, std::span<const double> p) {
-            setting.shifted_from = form.held;
-            setting.shift_m = {p[0], p[1]};
-          },
-      .gradual = true};
+  static const Term term{.mechanism = mechanism::print_layer_shift,
+                         .forms = forms_of,
+                         .bounds =
+                             [](const Sent& sent) {
+                               const Vec2 pixel = sent.printer.pixel_m;
+                               return std::vector<Bounds>{{0, -4 * pixel.x, 4 * pixel.x, 0.1 * pixel.x},
+                                                          {0, -4 * pixel.y, 4 * pixel.y, 0.1 * pixel.y},
+                                                          {0, 0, 1e6, 0}};
+                             },
+                         .set =
+                             [](Setting& setting, const Sent&, const Form& form, std::span<const double> p) {
+                               setting.shifted_from = form.held;
+                               setting.shift_m = {p[0], p[1]};
+                             },
+                         .gradual = true};
   return term;
 }
 

@@ -16,8 +16,10 @@ const Term& print_overcure() {
           },
       .set =
           [](Setting& setting, const Sent&, const Form&, std::span<const double> p) {
-            if (p[0] > 0) setting.printer.overcure_m = p[0];
-            else setting.printer.overcure_m.reset();
+            if (p[0] > 0)
+              setting.printer.overcure_m = p[0];
+            else
+              setting.printer.overcure_m.reset();
           },
       .write = [](manifest::Print& print, const Sent&, std::span<const double> p,
                   std::span<const double>) { print.overcure_m = p[0]; }};

@@ -7,9 +7,10 @@ namespace gonio::explain::prints::terms {
 
 const Term& print_shrinkage() {
   static const Term term{.mechanism = mechanism::print_shrinkage,
-                         .set = [](Setting& setting, const Sent&, const Form&, std::span<const double> p) {
-                           setting.shrinkage = {p[0], p[1], p[2]};
-                         },
+                         .set =
+                             [](Setting& setting, const Sent&, const Form&, std::span<const double> p) {
+                               setting.shrinkage = {p[0], p[1], p[2]};
+                             },
                          .gradual = true};
   return term;
 }
