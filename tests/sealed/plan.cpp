@@ -101,9 +101,9 @@ const std::vector<WorldEntry> entries{
      {3, 2, 2, 2, 1, 1}},
     {"prints",
      prints_world,
-     {{Kind::single, {"lamp"}, "no law", 3, 1}},
-     {12, 4, 6, 6, 3, 4},
-     {3, 1, 1, 1, 1, 1}}};
+     {{Kind::single, {"lamp"}, "no law", 3, 0}},
+     {8, 3, 4, 4, 2, 3},
+     {2, 0, 1, 0, 0, 0, 2}}};
 
 // Sizes in detection limits, in turn: 0 draws what occurs in practice.
 constexpr double multiples[] = {0, 4, 0, 8, 0, 0};

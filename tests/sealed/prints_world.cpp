@@ -86,7 +86,7 @@ class Prints final : public World {
           const double sign = far_side_ % 2 == 0 ? 1 : -1;
           return std::vector<TrueValue>{{"print.pixel-tilt", names[far_side_], sign * s[0] / side_px}};
         };
-    add({"rough", "print.ground-noise", stage, {}, 0.03, 0.1});
+    add({"rough", "", stage, {}, 0.03, 0.1});
     add({"oxygen from the sides", "", stage, {}, 0.15, 0.5});
     add({"scratched membrane", "", stage, {}, 0.06, 0.25});
     add({"cooling resin", "", stage, {}, 0.03, 0.1});

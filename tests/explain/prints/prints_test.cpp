@@ -239,14 +239,17 @@ TEST(Answers, NothingWhereNothingIsLeftOut) {
 
 TEST(Answers, AnotherResinIsAnotherGrowth) {
   Setting made = stated(sample());
-  made.printer.growth = print::Growth(print::GrowthLaw{17e-6, 8e-6, -0.03});
+  equation::PrintGrowth told = equation::print_growth_of(*made.printer.growth.law());
+  told.white_m *= 0.95, told.threshold += 0.02, told.curvature *= 0.5;
+  const print::GrowthLaw law = equation::print_growth(told);
+  made.printer.growth = print::Growth(law);
   const Answer a = explained(made, 12);
   ASSERT_THAT(a.named, testing::ElementsAre(mechanism::print_growth().id)) << a.e.sentence;
   ASSERT_TRUE(a.document.prints.at("p").growth.has_value());
   const manifest::PrintGrowth& growth = *a.document.prints.at("p").growth;
   // Its height over the plane, which is free, is told by the few greys that cease to cure; its shape by all.
-  EXPECT_NEAR(growth.beta_m, 8e-6, 4 * growth.sigma.at("beta_m")[0] + 0.05 * 8e-6);
-  EXPECT_NEAR(growth.gamma, -0.03, 4 * growth.sigma.at("gamma")[0] + 0.005);
+  EXPECT_NEAR(growth.beta_m, law.beta_m, 4 * growth.sigma.at("beta_m")[0] + 0.05 * law.beta_m);
+  EXPECT_NEAR(growth.gamma, law.gamma, 4 * growth.sigma.at("gamma")[0] + 0.02);
 }
 
 TEST(Answers, ASlippedPlatformIsFoundWithItsLayer) {

@@ -69,7 +69,6 @@ const Term& print_growth() {
                 std::span<const double> p) { setting.printer.growth = print::Growth(law_of(sent, p)); },
       // Greys that cease to cure are as many as a step is wide: they tell how high the law stands over the plane.
       .step = 0.5,
-      .gradual = true,
       .write = write};
   return term;
 }
