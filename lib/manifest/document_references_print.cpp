@@ -21,6 +21,13 @@ void check_prints(const Document& d) {
     if (print.pixel_m.size() != 2)
       throw Error(Exit::data, at + "/pixel_m", "has " + std::to_string(print.pixel_m.size()) + " numbers",
                   "give two lengths [x, y]");
+    for (std::size_t i = 0; i < print.measured.size(); ++i) {
+      const std::string map = at + "/measured/" + std::to_string(i);
+      must_exist(d.reliefs, "reliefs", print.measured[i].relief, map + "/relief");
+      if (print.measured[i].at_m.size() != 2)
+        throw Error(Exit::data, map + "/at_m", "has " + std::to_string(print.measured[i].at_m.size()) + " numbers",
+                    "give two lengths [x, y]");
+    }
     for (const auto& [key, use] : print.microstructures)
       must_exist(d.files, "files", use.file, at + "/microstructures/" + key + "/file");
     for (std::size_t i = 0; i < print.parts.size(); ++i) {

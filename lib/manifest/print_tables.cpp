@@ -49,6 +49,16 @@ const std::vector<Field<PrintedPart>>& printed_part_fields() {
   return table;
 }
 
+const std::vector<Field<MeasuredPrint>>& measured_print_fields() {
+  static const std::vector<Field<MeasuredPrint>> table{
+      field("relief", &MeasuredPrint::relief, "", "the map: name in reliefs").needed(),
+      field("at_m", &MeasuredPrint::at_m, "m",
+            "where its first point, of the uppermost row, lies on the platform [x, y]")
+          .needed(),
+      field("turn_rad", &MeasuredPrint::turn_rad, "rad", "of its rows about z, on the platform")};
+  return table;
+}
+
 const std::vector<Field<Print>>& print_fields() {
   static const std::vector<Field<Print>> table{
       field("pixel_m", &Print::pixel_m, "m", "size of a pixel on the platform [x, y]").positive().needed(),
@@ -68,13 +78,16 @@ const std::vector<Field<Print>>& print_fields() {
       field("figures", &Print::figures, "", "of the job, by name; units end the names"),
       field("relief", &Print::relief, "", "the predicted surface, seen from the projector: name in reliefs"),
       field("mesh", &Print::mesh, "", "the predicted part: name in meshes"),
-      field("surface", &Print::surface, "", "how it reflects: name in surfaces")};
+      field("surface", &Print::surface, "", "how it reflects: name in surfaces"),
+      field("measured", &Print::measured, "",
+            "maps of what was printed, heights from any plane; explain(1) asks them")};
   return table;
 }
 
 GONIO_RECORD(PrintGrowth, print_growth_fields);
 GONIO_RECORD(PrintBleed, print_bleed_fields);
 GONIO_RECORD(PrintedPart, printed_part_fields);
+GONIO_RECORD(MeasuredPrint, measured_print_fields);
 GONIO_RECORD(Print, print_fields);
 
 }  // namespace gonio::manifest

@@ -195,6 +195,7 @@ void add_prints(List& all) {
                      print_growth_fields()));
   all.push_back(part("prints: bleed", "How light spreads about a pixel.", print_bleed_fields()));
   all.push_back(part("prints: parts", "Meshes on the platform.", printed_part_fields()));
+  all.push_back(part("prints: measured", "Maps of what was printed, seen from the projector.", measured_print_fields()));
   all.push_back(part("prints: microstructures",
                      "Patterns of surfaces, as a share of the topmost layer: a model, its parameters under their own "
                      "names, and:",

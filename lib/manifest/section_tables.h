@@ -19,6 +19,7 @@ struct ProvenanceStep;
 struct DevelopedStep;  // sections/developed.h
 struct KnownShape;     // sections/cloud.h
 struct MarkerPair;     // sections/placement.h
+struct MeasuredPrint;  // sections/print.h
 struct PlacementContact;
 struct MeasuredView;  // sections/plan.h
 struct CheckView;
@@ -119,6 +120,7 @@ GONIO_TABLE(PrintGrowth, print_growth_fields);
 GONIO_TABLE(PrintBleed, print_bleed_fields);
 GONIO_TABLE(MicrostructureUse, microstructure_use_fields);
 GONIO_TABLE(PrintedPart, printed_part_fields);
+GONIO_TABLE(MeasuredPrint, measured_print_fields);
 GONIO_TABLE(Print, print_fields);
 GONIO_TABLE(ProvenanceStep, provenance_step_fields);
 GONIO_TABLE(ProvenanceRun, provenance_run_fields);

@@ -12,7 +12,7 @@ namespace gonio::mechanism {
 namespace {
 
 constexpr std::size_t width = 100;
-constexpr std::array<std::pair<const char*, const char*>, 14> stages = {{
+constexpr std::array<std::pair<const char*, const char*>, 15> stages = {{
     {"light", "Lights: what leaves the lamps and reaches the scene"},
     {"transport", "Transport: light that arrives by way of other things"},
     {"surface", "Surfaces: what they send back"},
@@ -26,6 +26,7 @@ constexpr std::array<std::pair<const char*, const char*>, 14> stages = {{
     {"sensor", "Sensors: from light to numbers"},
     {"tracks", "Tracks: points that are followed through pictures"},
     {"tomograph", "Tomographs: X-rays, the detector, and what reconstruction makes of them"},
+    {"print", "Prints: from grey values to heights"},
     {"reference", "References: what measurements are held against"},
 }};
 

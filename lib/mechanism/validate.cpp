@@ -24,7 +24,8 @@ bool exists(const manifest::Document& d, Target target, const std::string& name)
     case Target::scene:
       if (!d.tables.empty() && (name.starts_with("point ") || name.starts_with("ball ")))
         return true;  // of a table of tracks, or of mirror balls
-      if (has_entry(d, "volumes", name) || has_entry(d, "clouds", name)) return true;
+      if (has_entry(d, "volumes", name) || has_entry(d, "clouds", name) || has_entry(d, "prints", name))
+        return true;
       if (std::ranges::find(d.images, name, &manifest::ImageEntry::id) != d.images.end()) return true;
       return has_entry(d, "sequences", name.substr(0, name.find('/')));  // "walking/point-7/frame-12"
   }

@@ -43,11 +43,17 @@ Spread::Spread(const Bleed& bleed, Vec2 pixel_m, int width_px, int height_px, Ve
   // As far as a picture reaches on either side, so that nothing comes round.
   kernel_->size = {cv::getOptimalDFTSize(2 * width_px), cv::getOptimalDFTSize(2 * height_px)};
   cv::Mat kernel(kernel_->size, CV_32F, cv::Scalar(0));
-  for (int j = 1 - height_px; j < height_px; ++j) {
-    auto* row = kernel.ptr<float>((j + kernel_->size.height) % kernel_->size.height);
-    for (int i = 1 - width_px; i < width_px; ++i)
-      row[(i + kernel_->size.width) % kernel_->size.width] =
+  const auto line = [&](int j) { return kernel.ptr<float>((j + kernel_->size.height) % kernel_->size.height); };
+  const bool even_x = offset_px.x == 0, even_y = offset_px.y == 0;  // as much on either side
+  for (int j = even_y ? 0 : 1 - height_px; j < height_px; ++j) {
+    auto* row = line(j);
+    for (int i = even_x ? 0 : 1 - width_px; i < width_px; ++i) {
+      const auto light =
           static_cast<float>(bleed.at({(i + offset_px.x) * pixel_m.x, (j + offset_px.y) * pixel_m.y}, pixel_m));
+      row[(i + kernel_->size.width) % kernel_->size.width] = light;
+      if (even_x && i > 0) row[kernel_->size.width - i] = light;
+    }
+    if (even_y && j > 0) std::copy_n(row, kernel_->size.width, line(-j));
   }
   cv::dft(kernel, kernel_->spectrum);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "print/mechanisms/print_overcure.h"
 
 namespace gonio::print {
 
@@ -42,7 +43,7 @@ void Cure::settle(std::size_t point, double own, double bottom_m, double top_m, 
 }
 
 void Cure::add(std::span<const float> light, double bottom_m, double top_m) {
-  const double kept = printer_.overcure_m && above_m_ > 0 ? std::exp(-above_m_ / *printer_.overcure_m) : 0;
+  const double kept = above_m_ > 0 ? equation::print_overcure(above_m_, printer_.overcure_m.value_or(0)) : 0;
   above_m_ = top_m - bottom_m;
   const int wide = box_.x_end - box_.x_begin;
   std::vector<float> clean(light.begin(), light.end());

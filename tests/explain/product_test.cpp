@@ -50,7 +50,8 @@ TEST(Product, WhatIsDeclaredIsBoundAndWhatIsBoundIsDeclared) {
   const std::multimap<std::string, std::string> folders = {
       {"images", "lib/relighting/terms"},           {"tables", "lib/explain/tables/terms"},
       {"tables", "lib/explain/tables/reflectance"}, {"stacks", "lib/explain/stacks/exposures"},
-      {"stacks", "lib/explain/stacks/lights"},      {"volumes", "lib/explain/volumes/terms"}};
+      {"stacks", "lib/explain/stacks/lights"},      {"volumes", "lib/explain/volumes/terms"},
+      {"prints", "lib/explain/prints/terms"}};
   std::map<std::string, std::set<std::string>> bound;  // by domain
   for (const auto& [domain, folder] : folders)
     for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(GONIO_SOURCE) / folder))

@@ -30,8 +30,7 @@ const std::set<std::string> owed = words(
     "geometry.contact transport.indirect transport.caustic robot.joint-offset robot.link-length robot.sag "
     "robot.backlash robot.thermal robot.time-offset tracks.perspective tracks.outliers reference.tile");
 // Terms of simulators that do not exist yet; they are declared with them.
-const std::set<std::string> of_other_simulators = {"print.growth", "print.light-bleed", "print.overcure",
-                                                   "geometry.beam-hardening"};
+const std::set<std::string> of_other_simulators = {"geometry.beam-hardening"};
 // Beyond the list: a rational lens is a family of the radial one; residue on a micro-structure, and its walls; a scale
 // for every frame of a film; what a tomograph does to a volume; what heats an arm's joints; what glue
 // and glass do to markers; the part of a lens' glare that falls with distance; single pictures of another exposure, and
@@ -41,7 +40,7 @@ const std::set<std::string> of_other_simulators = {"print.growth", "print.light-
 // in the dark, what filters that are not the eye's do to colours, what an open aperture loses at a rim; what
 // bends the points of structured light; sizes that differ from a model's along each axis, what curls, and
 // light that masks of shadows leave out; how rough glass and metal are and where, and light beneath a surface that
-// remembers where it was going.
+// remembers where it was going; what a printer does to the heights of what it prints.
 const std::set<std::string> besides = words(
     "lens.rational surface.residue surface.walls tracks.scale ct.threshold ct.scale ct.blur ct.cupping "
     "ct.beam-hardening ct.scatter ct.ring ct.streak ct.axis-tilt robot.warm-up robot.joule-heating "
@@ -53,7 +52,8 @@ const std::set<std::string> besides = words(
     "projector.lens projector.moved rig.drift structured-light.subsurface structured-light.motion "
     "structured-light.interreflection structured-light.edge structured-light.defocus geometry.shrinkage "
     "geometry.bend ground.not-flat mask.caustic surface.roughness surface.print-slopes surface.print-layers "
-    "surface.polish surface.directional-subsurface");
+    "surface.polish surface.directional-subsurface print.growth print.bleed print.overcure print.layer-shift "
+    "print.shrinkage print.membrane print.pixel-tilt");
 
 // Owed and not there yet: printed, until they are declared and leave this list.
 const std::set<std::string> awaited = {};

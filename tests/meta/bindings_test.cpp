@@ -23,7 +23,8 @@ const std::vector<std::string> simulators = {"lib/scene/edits/",
                                              "lib/explain/tables/reflectance/",
                                              "lib/explain/stacks/exposures/",
                                              "lib/explain/stacks/lights/",
-                                             "lib/explain/volumes/terms/"};
+                                             "lib/explain/volumes/terms/",
+                                             "lib/explain/prints/terms/"};
 
 // Reasons why a domain cannot ask for a mechanism stand beside the domain; explain/product_test holds their ids against
 // the registry.

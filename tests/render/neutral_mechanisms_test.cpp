@@ -52,7 +52,7 @@ bool concerns_pictures(const Mechanism& m) {
   // are not here: what is traced is written into the surfaces themselves.
   const bool tables_alone = !m.domains.empty() && std::ranges::all_of(m.domains, [](const std::string& domain) {
     return domain == "tables" || domain == "heights" || domain == "nrsfm" || domain == "volumes" ||
-           domain == "clouds" || domain == "traced";
+           domain == "prints" || domain == "clouds" || domain == "traced";
   });
   return lens || is_for("images") || !(is_for("boards") || is_for("robot") || tables_alone);
 }

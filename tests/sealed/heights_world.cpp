@@ -2,7 +2,6 @@
 // with flanks, scratches; written as a profiler's file.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "geom/vector.h"
 #include "sealed/camera_chain.h"
@@ -69,7 +68,7 @@ class Heights final : public World {
   bool knows_floor() const override { return false; }  // scored by spectra
   void locate(const Numbers&, const Numbers&, Case&) const override {}
   void write(const Numbers& observed, const Numbers&, Case& into) const override {
-    into.files["map.sur"] = profile(observed);
+    into.files["map.sur"] = profile(side, side, step_m, observed);
     Value m = Value::object();
     m["tables"]["t"] = Value::object({{"file", "map"}, {"model", "heights"}});
     finish(m, into);
@@ -118,24 +117,6 @@ class Heights final : public World {
     const double across = (x - s.y * side) * std::cos(s.x) + (y - s.z * side) * std::sin(s.x),
                  along = (y - s.z * side) * std::cos(s.x) - (x - s.y * side) * std::sin(s.x);
     return std::abs(along) < 0.15 * side ? std::exp(-0.5 * across * across / 2.25) : 0;
-  }
-  // Digital Surf, "Surface Data File Format" (1991), format 1: 512 bytes of head, then points of 32 bits.
-  static std::string profile(const Numbers& z) {
-    std::string file(512, '\0');
-    const auto put = [&]<class T>(std::size_t at, T value) { std::memcpy(&file[at], &value, sizeof value); };
-    std::memcpy(file.data(), "DIGITAL SURF", 12);
-    constexpr float unit_m = 1e-12f;
-    for (const std::size_t place : {14, 16}) put(place, std::int16_t{1});
-    put(18, std::int16_t{2}), put(98, std::int16_t{32});
-    put(100, std::int32_t{-2000000000}), put(104, std::int32_t{2000000000});
-    put(108, std::int32_t{side}), put(112, std::int32_t{side}), put(116, std::int32_t{side * side});
-    put(120, static_cast<float>(step_m)), put(124, static_cast<float>(step_m)), put(128, unit_m);
-    for (std::size_t place = 132; place < 276; place += 16) std::memcpy(&file[place], "m               ", 16);
-    for (const double v : z) {
-      const auto number = static_cast<std::int32_t>(std::lround(v / static_cast<double>(unit_m)));
-      file.append(reinterpret_cast<const char*>(&number), sizeof number);
-    }
-    return file;
   }
   std::vector<double> white_;
   std::vector<Vec3> scratches_;  // direction, middle in shares of the side

@@ -98,7 +98,12 @@ const std::vector<WorldEntry> entries{
       {Kind::null, {}, "resting lid"},
       {Kind::single, {"sunk lid"}, "resting lid"}},
      {14, 8, 8, 6, 4, 4},
-     {3, 2, 2, 2, 1, 1}}};
+     {3, 2, 2, 2, 1, 1}},
+    {"prints",
+     prints_world,
+     {{Kind::single, {"lamp"}, "no law", 3, 0}},
+     {8, 3, 4, 4, 2, 3},
+     {2, 0, 1, 0, 0, 0, 2}}};
 
 // Sizes in detection limits, in turn: 0 draws what occurs in practice.
 constexpr double multiples[] = {0, 4, 0, 8, 0, 0};

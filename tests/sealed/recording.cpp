@@ -1,5 +1,9 @@
 #include "sealed/recording.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
 #include "base/text.h"
 
 namespace gonio::sealed {
@@ -51,6 +55,27 @@ void finish(Value manifest, Case& into) {
 
 Value free_parameter(double start) {
   return Value::object({{"value", start}, {"free", true}});
+}
+
+std::string profile(int width, int height, double step_m, const Numbers& z) {
+  std::string file(512, '\0');
+  const auto put = [&]<class T>(std::size_t at, T value) { std::memcpy(&file[at], &value, sizeof value); };
+  std::memcpy(file.data(), "DIGITAL SURF", 12);
+  constexpr float unit_m = 1e-12f;
+  constexpr std::int32_t lowest = -2000000000;
+  const bool gaps = std::any_of(z.begin(), z.end(), [](double v) { return !std::isfinite(v); });
+  for (const std::size_t place : {14, 16}) put(place, std::int16_t{1});
+  put(18, std::int16_t{2}), put(86, static_cast<std::int16_t>(gaps)), put(98, std::int16_t{32});
+  put(100, lowest), put(104, std::int32_t{2000000000});
+  put(108, std::int32_t{width}), put(112, std::int32_t{height}), put(116, std::int32_t{width * height});
+  put(120, static_cast<float>(step_m)), put(124, static_cast<float>(step_m)), put(128, unit_m);
+  for (std::size_t place = 132; place < 276; place += 16) std::memcpy(&file[place], "m               ", 16);
+  for (const double v : z) {
+    const std::int32_t number =
+        std::isfinite(v) ? static_cast<std::int32_t>(std::lround(v / static_cast<double>(unit_m))) : lowest - 2;
+    file.append(reinterpret_cast<const char*>(&number), sizeof number);
+  }
+  return file;
 }
 
 }  // namespace gonio::sealed

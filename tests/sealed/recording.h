@@ -24,5 +24,8 @@ Value pose(const std::vector<double>& rotation_3x3, double x, double y, double z
 // recording.json with "gonio" and the files so far made (but itself).
 void finish(Value manifest, Case& into);
 Value free_parameter(double start);
+// A profiler's file, rows from the top, metres, NaN where nothing was measured: Digital Surf, "Surface Data File
+// Format" (1991), format 1, 512 bytes of head, then points of 32 bits.
+std::string profile(int width, int height, double step_m, const Numbers& z);
 
 }  // namespace gonio::sealed

@@ -42,5 +42,6 @@ std::unique_ptr<World> gloss_world();
 std::unique_ptr<World> heights_world();
 std::unique_ptr<World> tomograph_world();
 std::unique_ptr<World> markers_world();
+std::unique_ptr<World> prints_world();
 
 }  // namespace gonio::sealed

@@ -28,7 +28,8 @@ const Domain& boards() {
             return files;
           },
       .untouched =
-          {{"light.", "corners are places, and keep no brightness"},
+          {{"print.", "a board of corners has no printed heights"},
+           {"light.", "corners are places, and keep no brightness"},
            {"camera.aspect", "the base model's own: free in every calibration from corners"},
            {"camera.principal-point", "the base model's own: free in every calibration from corners"},
            {"camera.pose", "every view's pose is free"},

@@ -37,6 +37,7 @@ const Domain& clouds() {
           },
       .files = files_of_clouds,
       .untouched = {
+          {"print.", "what was sent to a printer is not known of a cloud"},
           {"surface.",
            "points are places, and keep no brightness; what a surface does to where they lie is "
            "structured-light.subsurface"},

@@ -12,7 +12,8 @@ namespace gonio::explain::domains {
 namespace {
 
 std::vector<Untouched> image_reasons() {
-  return {{"projector.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
+  return {{"print.", "heights of a voxel are below what pictures show"},
+          {"projector.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
           {"rig.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
           {"structured-light.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
           {"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},

@@ -19,6 +19,7 @@ const Domain& nrsfm() {
           },
       .files = gonio::nrsfm::followed_files,
       .untouched = {
+          {"print.", "tracks show no printed heights"},
           {"projector.", "tracks have no projector"},
           {"rig.", "tracks have no projector"},
           {"structured-light.", "tracks have no projector"},

@@ -43,6 +43,7 @@ const Domain& outlines() {
           },
       .files = files_of_outlines,
       .untouched = {
+          {"print.", "layers and grey values are below what rims show; geometry.shrinkage is"},
           {"surface.", "rims are places, and keep no brightness"},
           {"light.",
            "rims of shadows tell where a lamp is and how large; what it gives where is seen in pictures, not in rims"},

@@ -38,6 +38,7 @@ const Domain& robot() {
           },
       .files = calibrations_of,
       .untouched = {
+          {"print.", "an arm prints nothing"},
           {"projector.", "poses come from boards; no projector shows codes"},
           {"rig.", "poses come from boards; no projector shows codes"},
           {"structured-light.", "poses come from boards; no projector shows codes"},

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<Untouched> stack_reasons() {
   return {
+      {"print.", "heights of a voxel are below what pictures show"},
       {"projector.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
       {"rig.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
       {"structured-light.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},

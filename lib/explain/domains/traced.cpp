@@ -11,6 +11,7 @@ std::vector<Untouched> traced_reasons() {
   const char* camera =
       "cameras and sensors are asked of pictures that the fast model can follow (images), of boards and of stacks";
   return {
+      {"print.", "heights of a voxel are below what pictures show"},
       {"projector.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
       {"rig.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
       {"structured-light.", "pictures of a scene are no codes: points that were decoded from them are clouds"},

@@ -18,6 +18,7 @@ const Domain& volumes() {
           },
       .files = volumes_files,
       .untouched = {
+          {"print.", "what was sent to a printer is not known of a scanned part"},
           {"projector.", "no projector shows codes"},
           {"rig.", "no projector shows codes"},
           {"structured-light.", "no projector shows codes"},

@@ -16,8 +16,8 @@ namespace gonio::manifest {
 struct PrintGrowth {  // how high a voxel grows by the grey value (print/growth.h)
   double alpha_m = 0, beta_m = 0, gamma = 0;
   Sigmas sigma;
-  std::vector<double> covariance;           // 3 x 3 of alpha, beta, gamma
-  std::vector<double> greys, heights_m;     // where the law fails: what was measured, rising
+  std::vector<double> covariance;        // 3 x 3 of alpha, beta, gamma
+  std::vector<double> greys, heights_m;  // where the law fails: what was measured, rising
   std::optional<double> lack_of_fit_p, rms_m;
   std::optional<std::int64_t> repetitions;  // of the gradient that it was fitted to
 };
@@ -41,6 +41,11 @@ struct PrintedPart {
   std::vector<std::string> repaired;          // what was done to the mesh, in words
   std::optional<double> volume_m3, facing_m2, hidden_m2, hidden_printed_m2;
 };
+struct MeasuredPrint {       // a map of the printed surface, seen from the projector; heights from any plane
+  std::string relief;        // name in reliefs
+  std::vector<double> at_m;  // where its first point, of the uppermost row, lies on the platform [x, y]
+  double turn_rad = 0;       // of its rows about z, on the platform
+};
 struct Print {  // "prints"
   std::vector<double> pixel_m;
   std::int64_t width_px = 0, height_px = 0;
@@ -56,6 +61,7 @@ struct Print {  // "prints"
   std::map<std::string, double> process;  // of the machine: exposure_s, lift_m, ...; units end the names
   std::map<std::string, double> figures;  // of the job: printed_layers, volume_m3, time_s, ...
   std::string relief, mesh, surface;      // predicted: names in reliefs, meshes, surfaces
+  std::vector<MeasuredPrint> measured;
 };
 
 }  // namespace gonio::manifest
