@@ -45,6 +45,7 @@ complete -c dlp-slice -l output -s o -r -d 'Where the manifest goes instead of s
 complete -c dlp-slice -l out -r -d 'Folder for the files that are written; made where it is missing.'
 complete -c dlp-slice -l allow-outside -d 'Let the manifest name files outside its own folder.'
 complete -c dlp-slice -l force -d 'Replace files that exist.'
+complete -c dlp-slice -l resume -d 'Keep files that an earlier, identical call has finished; make only the rest.'
 complete -c dlp-slice -l seed -x -d 'Of the random numbers; the same seed gives the same bytes.'
 complete -c dlp-slice -l stamp -d 'Record time and host beside the provenance; without it, same inputs give the same bytes.'
 complete -c dlp-slice -l depfile -r -d 'Write the files that were read as a make rule.'

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "print/mechanisms/print_overcure.h"
 
 namespace gonio::print {
 namespace {
@@ -59,7 +60,7 @@ Compensation::~Compensation() = default;
 
 double Compensation::kept(std::size_t k) const {
   // Through the layer itself, to the top of the one below.
-  return printer_.overcure_m ? std::exp(-window_[k].thickness_m() / *printer_.overcure_m) : 0;
+  return equation::print_overcure(window_[k].thickness_m(), printer_.overcure_m.value_or(0));
 }
 
 bool Compensation::draw() {

@@ -16,7 +16,7 @@ namespace {
 
 using manifest::Value;
 
-constexpr std::ptrdiff_t most_lines = 5210, most_for_a_mechanism = 13, longest_repeat = 12;
+constexpr std::ptrdiff_t most_lines = 5240, most_for_a_mechanism = 13, longest_repeat = 12;
 
 std::string schema_text() {
   return read_file(std::filesystem::path(GONIO_SOURCE) / "schemas" / "manifest-1.schema.json");

@@ -64,7 +64,9 @@ std::string scene(const std::string& ply) {
   const Vec3 light = n * std::cos(half) - side * std::sin(half);
   const double f = picture_px * away_m / (1.5 * radius_mm * 1e-3), c = (picture_px - 1) / 2.0;
   return format(
-      R"({"gonio": 1, "files": {"m": {"path": "%s"}}, "cameras": {"c": {"model": "pinhole", "width_px": %d, "height_px": %d, "fx_px": %.9g, "fy_px": %.9g, "cx_px": %g, "cy_px": %g}},
+      R"({"gonio": 1, "files": {"m": {"path": "%s"}},
+ "cameras": {"c": {"model": "pinhole", "width_px": %d, "height_px": %d, "fx_px": %.9g, "fy_px": %.9g,
+                   "cx_px": %g, "cy_px": %g}},
  "meshes": {"m": {"file": "m"}}, "surfaces": {"s": {"model": "beckmann-conductor", "alpha": 0.12, "eta": 1.5, "k": 4}},
  "lights": {"l": {"model": "directional", "towards": [%.9g, %.9g, %.9g], "watt_per_m2": 1}},
  "objects": [{"id": "o", "mesh": "m", "surface": "s"}],
