@@ -1,7 +1,7 @@
 # fish completion of dlp-slice; printed by scripts/regenerate
 complete -c dlp-slice -l printer -r -d 'Manifest whose prints describes the printer. Default: the manifest that is read.'
 complete -c dlp-slice -l print -x -d 'Which of prints. Default: the only one.'
-complete -c dlp-slice -l unit -x -a 'm mm um in' -d 'Unit of the meshes numbers. Needed for formats that state none; PLY files are metres.'
+complete -c dlp-slice -l unit -x -a 'm mm um in' -d 'Unit of the numbers of STL and OBJ files, which state none. PLY files are metres, 3MF files say what they are.'
 complete -c dlp-slice -l scale -x -d 'Enlarge the meshes.'
 complete -c dlp-slice -l largest-hole -x -d 'Diagonal of the largest hole that is closed. Default: a twentieth of the meshs.'
 complete -c dlp-slice -l at -x -d 'Where the middle of a meshs base stands on the platform; once for each mesh, in their order. Default: in a row about the middle.'

@@ -33,10 +33,11 @@ io::TriangleMesh read_mesh(Work& work, const std::filesystem::path& path) {
   const std::string extension = lower_case(path.extension().string());
   io::TriangleMesh mesh =
       extension == ".ply" ? io::read_ply(path, {.properties = {}, .labels = true}) : io::read_mesh(path);
-  if (extension != ".ply" && !work.call.given("unit"))
+  const bool metres = extension == ".ply" || extension == ".3mf";  // the latter once its own unit is read
+  if (!metres && !work.call.given("unit"))
     throw Error(Exit::usage, "--unit", "is missing: " + path.filename().string() + " does not say what its numbers are",
                 "add, say, --unit mm");
-  const double scale = (work.call.given("unit") ? unit_m(work.call.text("unit")) : 1) * work.call.number("scale");
+  const double scale = (metres ? 1 : unit_m(work.call.text("unit"))) * work.call.number("scale");
   for (Vec3& p : mesh.positions_m) p = p * scale;
   return mesh;
 }

@@ -40,7 +40,8 @@ void add_bodies(std::vector<cli::Option>& all) {
   all.push_back(text("print", "Which of prints. Default: the only one.", "NAME"));
   all.push_back({.name = "unit",
                  .type = Type::choice,
-                 .help = "Unit of the meshes' numbers. Needed for formats that state none; PLY files are metres.",
+                 .help = "Unit of the numbers of STL and OBJ files, which state none. PLY files are metres, 3MF files "
+                         "say what they are.",
                  .choices = {"m", "mm", "um", "in"}});
   all.push_back({.name = "scale",
                  .type = Type::quantity,

@@ -17,10 +17,30 @@ using report::number_text;
 
 constexpr double um = 1e6, mm = 1e3, ml = 1e6;
 
-std::string png_of(const Section& section) {
+constexpr int widest_px = 400;  // of a picture on the page
+
+// Means over squares of pixels, so that a picture is no wider than that.
+Section shrunk(const Section& section) {
+  const int by = (section.width + widest_px - 1) / widest_px;
+  if (by <= 1) return section;
+  Section small{section.title, section.width / by, std::max(1, section.height / by), {}};
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      int sum = 0, n = 0;
+      for (int j = y * by; j < std::min(section.height, (y + 1) * by); ++j)
+        for (int i = x * by; i < (x + 1) * by; ++i, ++n)
+          sum += section.greys[static_cast<std::size_t>(j) * static_cast<std::size_t>(section.width) +
+                               static_cast<std::size_t>(i)];
+      small.greys.push_back(static_cast<std::uint8_t>(sum / std::max(1, n)));
+    }
+  return small;
+}
+
+report::Figure figure_of(const Section& whole, const std::string& title, const std::string& caption) {
+  const Section section = shrunk(whole);
   io::Image image(section.width, section.height, {"Y"});
   for (std::size_t k = 0; k < section.greys.size(); ++k) image.data[k] = section.greys[k] / 255.0f;
-  return io::encode_raster_png(image);
+  return {.png = io::encode_raster_png(image), .title = title, .caption = caption, .width_px = section.width};
 }
 
 std::string duration(double s) {
@@ -100,8 +120,7 @@ void add_layers(report::Page& page, const Work& work) {
   if (work.sections.empty()) return;
   page.section("Layers");
   std::vector<report::Figure> layers;
-  for (const Section& section : work.sections)
-    layers.push_back({.png = png_of(section), .title = section.title, .width_px = section.width});
+  for (const Section& section : work.sections) layers.push_back(figure_of(section, section.title, ""));
   page.figures(layers);
 }
 
@@ -150,7 +169,10 @@ void add_design(report::Page& page, const Work& work) {
   if (!work.design) return;
   page.section("Wish");
   page.list(work.notes);
-  report::Plot plot{.title = "Figure by what was moved", .x_label = work.design->moved, .y_label = "figure"};
+  report::Plot plot{
+      .title = "Figure by what was moved", .x_label = work.design->moved, .y_label = work.call.text("wish")};
+  plot.log_x = work.design->tried.front().strength > 0 && work.design->tried.back().strength > 0 &&
+               work.design->use.model == "noise";
   report::Series tried{.kind = report::Series::Kind::points, .name = "simulated prints"};
   for (const print::DesignStep& step : work.design->tried)
     tried.x.push_back(step.strength), tried.y.push_back(step.figure);
@@ -171,10 +193,9 @@ void add_prediction(report::Page& page, const Work& work) {
     all.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
   view.meshes.push_back(std::move(all));
   view.turn = {0.866, -0.5, 0, 0.25, 0.433, 0.866, -0.433, -0.75, 0.5};
-  page.figures(
-      {{.png = png_of(heights), .title = "From the projector", .caption = heights.title, .width_px = heights.width},
-       {.png = report::still_png(view, 0, 560, 420), .title = "Lit from the left"}},
-      480);
+  page.figures({figure_of(heights, "From the projector", heights.title),
+                {.png = report::still_png(view, 0, 560, 420), .title = "Lit from the left"}},
+               480);
 }
 
 }  // namespace
@@ -182,6 +203,7 @@ void add_prediction(report::Page& page, const Work& work) {
 std::string page(const Work& work) {
   const std::string what = work.growth   ? "Growth of " + work.printer.name
                            : work.sample ? "Calibration sample of " + work.printer.name
+                           : work.design ? "A wished surface on " + work.printer.name
                                          : "Print on " + work.printer.name;
   std::string lead = format("%d x %d pixels of %.4g x %.4g um.", work.printer.width_px, work.printer.height_px,
                             work.printer.pixel_m.x * um, work.printer.pixel_m.y * um);

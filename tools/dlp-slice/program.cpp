@@ -78,7 +78,7 @@ const cli::Program& gonio_program() {
       .options = options(),
       .operands = {{.name = "MESH",
                     .type = Type::text,
-                    .help = "A mesh, PLY, STL or OBJ, mended where it is not closed; several stand side by side.",
+                    .help = "A mesh, PLY, STL, OBJ or 3MF, mended where it is not closed; several stand side by side.",
                     .repeat = true}},
       .takes_out = true,
       .takes_seed = true,

@@ -164,13 +164,20 @@ class Kept {
   static std::string key_of(const Work& work, const print::PixelBox& box) {
     std::string text = format("%d %d %d %d %lld\n", box.x_begin, box.y_begin, box.x_end, box.y_end,
                               static_cast<long long>(work.call.integer("iterations")));
+    for (const char* option : {"coverage", "axes"}) text += work.call.text(option) + "\n";
+    text += format("%lld %lld %llu %.17g %d\n", static_cast<long long>(work.call.integer("samples")),
+                   static_cast<long long>(work.call.integer("rays")), static_cast<unsigned long long>(work.call.seed),
+                   work.call.number("texture-length"), work.call.flag("beneath") ? 1 : 0);
+    const manifest::Print& entry = work.call.document.prints.at(work.printer.name);
+    for (const auto& [name, use] : entry.microstructures)
+      if (!use.file.empty()) text += sha256_of_file(manifest::resolve(work.call.document, use.file, name)) + "\n";
     for (const print::SlicedBody& body : work.bodies) {
       for (const Vec3& p : body.positions_m)
         text += shortest_text(p.x) + " " + shortest_text(p.y) + " " + shortest_text(p.z) + "\n";
       for (const auto& [a, b, c] : body.triangles) text += format("%u %u %u\n", a, b, c);
     }
     manifest::Document printer;
-    printer.prints[work.printer.name] = work.call.document.prints.at(work.printer.name);
+    printer.prints[work.printer.name] = entry;
     for (manifest::PrintedPart& part : printer.prints.begin()->second.parts) part.mesh.clear();
     printer.prints.begin()->second.layers.clear(), printer.prints.begin()->second.ground.clear();
     return sha256(text + manifest::print_document(printer, "."));
