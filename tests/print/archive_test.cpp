@@ -227,8 +227,9 @@ TEST(Archives, MemoryDoesNotGrowWithTheLayers) {
     const long before = high_water_kb();
     const std::string small = encoded.substr(0, 20000);  // nobody looks at it
     for (int k = 1; k < 5000; ++k) writer->add_encoded(small, 25e-6 * k, 25e-6 * (k + 1));
-    writer->finish();
-    ::_exit(high_water_kb() - before < 8192 ? 0 : 1);
+    const long grown = high_water_kb() - before;
+    writer->finish();  // which draws previews by a library that is loaded then
+    ::_exit(grown < 8192 ? 0 : 1);
   }
   int status = 0;
   ::waitpid(child, &status, 0);
