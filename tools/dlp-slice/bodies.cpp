@@ -18,7 +18,6 @@
 #include "mesh/topology.h"
 #include "print/mend.h"
 #include "relief/microstructure_use.h"
-#include "report/mesh_view.h"
 #include "tools/dlp-slice/work.h"
 
 namespace gonio::tools::dlp_slice {
@@ -292,18 +291,31 @@ void enter_bodies(Work& work) {
   for (std::size_t i = 0; i < parts.size(); ++i) enter(work, parts[i].mesh, work.meshes[i]);
 }
 
-std::vector<print::JobPreview> previews_of(const Work& work) {
+report::MeshView view_of(std::string name, std::span<const Vec3> positions_m,
+                         std::vector<std::array<std::uint32_t, 3>> triangles) {
+  report::ViewedMesh mesh{.name = name, .positions = {}, .triangles = std::move(triangles), .value = {}};
+  for (const Vec3& p : positions_m)
+    mesh.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
   report::MeshView view;
-  view.name = "print";
-  report::ViewedMesh all;
-  for (const print::SlicedBody& body : work.bodies) {
-    const auto first = static_cast<std::uint32_t>(all.positions.size());
-    for (const Vec3& p : body.positions_m)
-      all.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    for (const auto& [a, b, c] : body.triangles) all.triangles.push_back({a + first, b + first, c + first});
-  }
-  view.meshes.push_back(std::move(all));
+  view.name = std::move(name);
+  view.meshes.push_back(std::move(mesh));
   view.turn = {0.866, -0.5, 0, 0.25, 0.433, 0.866, -0.433, -0.75, 0.5};
+  return view;
+}
+
+report::MeshView view_of(const Work& work) {
+  std::vector<Vec3> positions_m;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const print::SlicedBody& body : work.bodies) {
+    const auto first = static_cast<std::uint32_t>(positions_m.size());
+    positions_m.insert(positions_m.end(), body.positions_m.begin(), body.positions_m.end());
+    for (const auto& [a, b, c] : body.triangles) triangles.push_back({a + first, b + first, c + first});
+  }
+  return view_of("what stands on the platform", positions_m, std::move(triangles));
+}
+
+std::vector<print::JobPreview> previews_of(const Work& work) {
+  const report::MeshView view = view_of(work);
   std::vector<print::JobPreview> previews;
   for (const auto& [wide, high] : {std::pair{400, 400}, std::pair{800, 480}}) {
     const io::Image image = io::decode_raster(report::still_png(view, 0, wide, high), "preview");

@@ -6,7 +6,6 @@
 
 #include "base/text.h"
 #include "io/raster.h"
-#include "report/mesh_view.h"
 #include "report/number_text.h"
 #include "tools/dlp-slice/work.h"
 
@@ -97,19 +96,9 @@ void add_parts(report::Page& page, const Work& work) {
       "Faces that look away from the projector cure without a layer to hold on to; structures leave them as they are "
       "unless asked for.";
   page.table(table);
-  report::MeshView view;
-  view.name = "what stands on the platform";
-  report::ViewedMesh all{.name = "parts", .positions = {}, .triangles = {}, .value = {}};
-  constexpr std::size_t most = 200000;
-  for (const print::SlicedBody& body : work.bodies) {
-    const auto first = static_cast<std::uint32_t>(all.positions.size());
-    for (const Vec3& p : body.positions_m)
-      all.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    for (const auto& [a, b, c] : body.triangles) all.triangles.push_back({a + first, b + first, c + first});
-  }
-  const bool small = all.triangles.size() <= most;
-  view.meshes.push_back(std::move(all));
-  view.turn = {0.866, -0.5, 0, 0.25, 0.433, 0.866, -0.433, -0.75, 0.5};
+  constexpr std::size_t most = 200000;  // triangles that a reader may turn
+  const report::MeshView view = view_of(work);
+  const bool small = view.meshes.front().triangles.size() <= most;
   if (small)
     page.figures({{.svg = report::html(view), .title = "Parts", .caption = "Drag to turn."}}, 560);
   else
@@ -185,14 +174,8 @@ void add_prediction(report::Page& page, const Work& work) {
   page.section("What will be printed");
   const print::CuredSurface& surface = *work.predicted;
   const Section heights = shaded(surface);
-  report::MeshView view;
-  view.name = "predicted surface";
-  io::TriangleMesh mesh = print::mesh_of(surface);
-  report::ViewedMesh all{.name = "predicted", .positions = {}, .triangles = std::move(mesh.triangles), .value = {}};
-  for (const Vec3& p : mesh.positions_m)
-    all.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-  view.meshes.push_back(std::move(all));
-  view.turn = {0.866, -0.5, 0, 0.25, 0.433, 0.866, -0.433, -0.75, 0.5};
+  const io::TriangleMesh mesh = print::mesh_of(surface);
+  const report::MeshView view = view_of("predicted surface", mesh.positions_m, mesh.triangles);
   page.figures({figure_of(heights, "From the projector", heights.title),
                 {.png = report::still_png(view, 0, 560, 420), .title = "Lit from the left"}},
                480);

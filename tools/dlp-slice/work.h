@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "print/design.h"
 #include "print/prediction.h"
 #include "print/slicer.h"
+#include "report/mesh_view.h"
 #include "tools/dlp-slice/options.h"
 
 namespace gonio::tools::dlp_slice {
@@ -55,6 +57,10 @@ double time_of(const Work& work, std::size_t layers);
 void open_bodies(Work& work);   // bodies.cpp: meshes, their places and structures
 void enter_bodies(Work& work);  // writes them
 std::vector<print::JobPreview> previews_of(const Work& work);
+// A mesh as reports show it: from the upper left, z up.
+report::MeshView view_of(std::string name, std::span<const Vec3> positions_m,
+                         std::vector<std::array<std::uint32_t, 3>> triangles);
+report::MeshView view_of(const Work& work);  // all that stands on the platform
 
 // send.cpp: layers into the archive.
 void send_bodies(Work& work);
