@@ -35,11 +35,18 @@ Section shrunk(const Section& section) {
   return small;
 }
 
+// In a dark frame, as the rest of the platform is: a full layer alone would be a white picture on a white page.
 report::Figure figure_of(const Section& whole, const std::string& title, const std::string& caption) {
   const Section section = shrunk(whole);
-  io::Image image(section.width, section.height, {"Y"});
-  for (std::size_t k = 0; k < section.greys.size(); ++k) image.data[k] = section.greys[k] / 255.0f;
-  return {.png = io::encode_raster_png(image), .title = title, .caption = caption, .width_px = section.width};
+  constexpr int frame = 4;
+  io::Image image(section.width + 2 * frame, section.height + 2 * frame, {"Y"});
+  for (int y = 0; y < section.height; ++y)
+    for (int x = 0; x < section.width; ++x)
+      image.at(x + frame, y + frame, 0) =
+          section.greys[static_cast<std::size_t>(y) * static_cast<std::size_t>(section.width) +
+                        static_cast<std::size_t>(x)] /
+          255.0f;
+  return {.png = io::encode_raster_png(image), .title = title, .caption = caption, .width_px = image.width};
 }
 
 std::string duration(double s) {

@@ -5,11 +5,10 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "explain/prints/prints_problem.h"
+#include "explain/switched_on.h"
 #include "manifest/document.h"
-#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/print.h"
 #include "manifest/sections/relief.h"
-#include "mechanism/mechanism.h"
 #include "print/archive.h"
 #include "relief/document.h"
 
@@ -95,19 +94,6 @@ std::vector<std::vector<float>> layers_of(print::ArchiveReader& archive, const p
   return layers;
 }
 
-void read_given(const manifest::Document& document, PrintsInput& input) {
-  for (const auto& [id, use] : document.mechanisms) {
-    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-    if (m == nullptr || std::ranges::find(m->domains, "prints") == m->domains.end()) continue;
-    const auto on = std::ranges::find(use.on, input.name);
-    if (!use.on.empty() && on == use.on.end()) continue;
-    const auto at = static_cast<std::size_t>(on - use.on.begin());
-    manifest::Parameters& own = input.given[id];
-    for (const auto& [key, parameter] : use.parameters)
-      if (parameter.given()) own[key] = manifest::Parameter(parameter.value[std::min(at, parameter.value.size() - 1)]);
-  }
-}
-
 PrintsInput read_input(const manifest::Document& document, const std::string& name) {
   PrintsInput input;
   input.name = name;
@@ -123,7 +109,7 @@ PrintsInput read_input(const manifest::Document& document, const std::string& na
     sent.centre_m = sent.centre_m + (map.at(0, 0) + map.at(map.map.width - 1, map.map.height - 1)) *
                                         (0.5 / static_cast<double>(input.maps.size()));
   sent.layers = layers_of(*open_layers(document, name), sent.printer, sent.box);
-  read_given(document, input);
+  input.given = switched_on_for(document, "prints", input.name);
   return input;
 }
 

@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "explain/switched_on.h"
 #include "explain/volumes/volumes_problem.h"
 #include "io/ply.h"
 #include "manifest/document.h"
-#include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/volume.h"
-#include "mechanism/mechanism.h"
 
 namespace gonio::explain {
 namespace {
@@ -74,19 +73,6 @@ mesh::Mesh believed(const manifest::Document& document, const manifest::Volume& 
   return mesh;
 }
 
-void read_given(const manifest::Document& document, VolumesInput& input) {
-  for (const auto& [id, use] : document.mechanisms) {
-    const mechanism::Mechanism* m = mechanism::find_mechanism(id);
-    if (m == nullptr || std::ranges::find(m->domains, "volumes") == m->domains.end()) continue;
-    const auto on = std::ranges::find(use.on, input.name);
-    if (!use.on.empty() && on == use.on.end()) continue;
-    const auto at = static_cast<std::size_t>(on - use.on.begin());
-    manifest::Parameters& own = input.given[id];
-    for (const auto& [key, parameter] : use.parameters)
-      if (parameter.given()) own[key] = manifest::Parameter(parameter.value[std::min(at, parameter.value.size() - 1)]);
-  }
-}
-
 VolumesInput read_input(const manifest::Document& document, const std::string& name, const manifest::Volume& volume) {
   VolumesInput input;
   input.name = name, input.mesh_name = volume.reference;
@@ -106,7 +92,7 @@ VolumesInput read_input(const manifest::Document& document, const std::string& n
   for (const manifest::Marker& marker : document.markers)
     if ((marker.volume.empty() || marker.volume == name) && marker.centre_m.size() == 3 && marker.radius_m)
       input.markers.push_back({led({marker.centre_m[0], marker.centre_m[1], marker.centre_m[2]}), *marker.radius_m});
-  read_given(document, input);
+  input.given = switched_on_for(document, "volumes", input.name);
   return input;
 }
 
