@@ -10,9 +10,9 @@
 // Seeds of cells left of or below the origin are taken modulo 65536 as well, upwards.
 // Seeds of neighbouring impulses are four apart and their numbers go together: the noise's standard deviation is 0.225,
 // where independent impulses make 0.154; and cells recur. One cell further it goes with itself by 0.54, 0.46 and -0.58
-// along x, y and z: a slice shows streaks along x. Read as places in one sequence from t = 0 (n the index, not the seed;
-// four numbers an impulse) the same formula has a standard deviation of 0.148 and no such correlation: the text leaves
-// open which is meant.
+// along x, y and z: a slice shows streaks along x. Read as places in one sequence from t = 0 (n the index, not the
+// seed; four numbers an impulse) the same formula has a standard deviation of 0.148 and no such correlation: the text
+// leaves open which is meant.
 #pragma once
 #include "geom/vector.h"
 
