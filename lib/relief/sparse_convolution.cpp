@@ -2,6 +2,7 @@
 #include "relief/sparse_convolution.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -10,18 +11,19 @@ namespace {
 
 constexpr std::int64_t impulses = 30;
 
-class Generator {
- public:
-  explicit Generator(std::int64_t seed)
-      : t_(static_cast<std::uint32_t>(seed) & 0xffffu) {}  // modulo 65536, also below 0
-  double next() {
-    t_ = (3125 * t_ + 49) & 0xffffu;
-    return t_ / 65536.0;
-  }
-
- private:
-  std::uint32_t t_;
-};
+// rnd(t_k) for k = 0 ... 65535.
+const std::array<float, 65536>& sequence() {
+  static const std::array<float, 65536> numbers = [] {
+    std::array<float, 65536> made{};
+    std::uint32_t t = 0;
+    for (float& number : made) {
+      t = (3125 * t + 49) & 0xffffu;
+      number = static_cast<float>(t) / 65536.0f;  // exact
+    }
+    return made;
+  }();
+  return numbers;
+}
 
 double cubic(Vec3 v) {
   const double left = 1 - 4 * dot(v, v);
@@ -32,6 +34,7 @@ double cubic(Vec3 v) {
 
 double published_noise(Vec3 cells) {
   const Vec3 first{std::floor(cells.x - 0.5), std::floor(cells.y - 0.5), std::floor(cells.z - 0.5)};
+  const auto& numbers = sequence();
   double sum = 0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 q =
@@ -39,9 +42,9 @@ double published_noise(Vec3 cells) {
     const auto place =
         static_cast<std::int64_t>(q.x) + 1000 * static_cast<std::int64_t>(q.y) + 576 * static_cast<std::int64_t>(q.z);
     for (std::int64_t j = 1; j <= impulses; ++j) {
-      Generator random(4 * (impulses * place + j));
-      const double height = random.next() * (j % 2 == 0 ? 1 : -1);
-      const double x = random.next(), y = random.next(), z = random.next();
+      const auto n = static_cast<std::uint32_t>(4 * (impulses * place + j));  // modulo 2^32, hence also modulo 65536
+      const double height = numbers[n & 0xffffu] * (j % 2 == 0 ? 1 : -1);
+      const double x = numbers[(n + 1) & 0xffffu], y = numbers[(n + 2) & 0xffffu], z = numbers[(n + 3) & 0xffffu];
       sum += height * cubic(q + Vec3{x, y, z} - cells);
     }
   }

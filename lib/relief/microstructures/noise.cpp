@@ -1,6 +1,5 @@
 // The published solid noise (relief/sparse_convolution.h) as a grey value: rough, and what breaks the staircase of
-// layers. Not without direction: see there. Luongo et al. 2020 state A and B; what length the argument 1 stands for
-// they do not.
+// layers. Luongo et al. 2020 state A and B; what length the argument 1 stands for they do not.
 #include "relief/microstructure.h"
 #include "relief/sparse_convolution.h"
 
