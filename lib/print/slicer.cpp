@@ -104,7 +104,11 @@ struct Slicer::Sweep {
         share[static_cast<std::size_t>(y - box.y_begin) * static_cast<std::size_t>(grid.width_px) +
               static_cast<std::size_t>(x - box.x_begin)]);
   }
-  relief::SurfacePlace place(std::uint32_t triangle, Vec2 at, double z_m) const;
+  struct FaceAxes {
+    Vec3 u{1, 0, 0}, v{0, 1, 0};
+  };
+  FaceAxes axes_of(std::uint32_t triangle) const;
+  relief::SurfacePlace place(std::uint32_t triangle, const FaceAxes& axes, Vec2 at, double z_m) const;
   double structure_over(int x, int y, std::uint32_t triangle, double z_m, int samples) const;
 
   const SlicedBody& body;
@@ -118,18 +122,39 @@ struct Slicer::Sweep {
   std::vector<float> share;  // modulated
 };
 
-relief::SurfacePlace Slicer::Sweep::place(std::uint32_t triangle, Vec2 at, double z_m) const {
-  relief::SurfacePlace p{at, {at.x, at.y, z_m}};
-  if (body.axes == StructureAxes::platform) return p;
+Slicer::Sweep::FaceAxes Slicer::Sweep::axes_of(std::uint32_t triangle) const {
   const auto& [i, j, k] = body.triangles[triangle];
-  const Vec3 &a = body.positions_m[i], &b = body.positions_m[j], &c = body.positions_m[k];
-  if (body.axes == StructureAxes::faces) {
-    const Vec3 normal = cross(b - a, c - a);
-    if (!(dot(normal, normal) > 0)) return p;
-    const Basis basis(normalized(normal));
-    p.along_m = {dot(p.body_m, basis.t), dot(p.body_m, basis.b)};
+  const Vec3 one = body.positions_m[j] - body.positions_m[i], two = body.positions_m[k] - body.positions_m[i];
+  const Vec3 across = cross(one, two);
+  if (!(dot(across, across) > 0)) return {};
+  const Vec3 n = normalized(across);
+  const auto within = [&](Vec3 direction) {
+    const Vec3 u = direction - n * dot(n, direction);
+    if (!(dot(u, u) > 1e-12 * dot(direction, direction))) {
+      const Basis any(n);
+      return FaceAxes{any.t, any.b};
+    }
+    return FaceAxes{normalized(u), cross(n, normalized(u))};
+  };
+  if (body.axes == StructureAxes::platform) return within({1, 0, 0});
+  if (body.axes == StructureAxes::direction) return within(body.direction);
+  if (body.axes == StructureAxes::faces) return {Basis(n).t, Basis(n).b};
+  const Vec2 a = body.texture[j] - body.texture[i], b = body.texture[k] - body.texture[i];
+  const double turned = a.x * b.y - b.x * a.y;  // > 0: the texture is seen the right way round
+  FaceAxes axes = within((one * b.y - two * a.y) * (turned < 0 ? -1.0 : 1.0));
+  if (turned < 0) axes.v = axes.v * -1.0;
+  return axes;
+}
+
+relief::SurfacePlace Slicer::Sweep::place(std::uint32_t triangle, const FaceAxes& axes, Vec2 at, double z_m) const {
+  relief::SurfacePlace p{at, {at.x, at.y, z_m}, axes.u, axes.v};
+  if (body.axes == StructureAxes::platform) return p;
+  if (body.axes != StructureAxes::texture) {
+    p.along_m = {dot(p.body_m, axes.u), dot(p.body_m, axes.v)};
     return p;
   }
+  const auto& [i, j, k] = body.triangles[triangle];
+  const Vec3 &a = body.positions_m[i], &b = body.positions_m[j], &c = body.positions_m[k];
   const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   if (area == 0) return p;
   const double s = ((at.x - a.x) * (c.y - a.y) - (at.y - a.y) * (c.x - a.x)) / area;
@@ -143,10 +168,11 @@ relief::SurfacePlace Slicer::Sweep::place(std::uint32_t triangle, Vec2 at, doubl
 double Slicer::Sweep::structure_over(int x, int y, std::uint32_t triangle, double z_m, int samples) const {
   const relief::ShareAt& structure = structure_of(triangle);
   if (!structure) return 1;
+  const FaceAxes axes = axes_of(triangle);
   double sum = 0;
   for (int j = 0; j < samples; ++j)
     for (int i = 0; i < samples; ++i)
-      sum += structure(place(triangle,
+      sum += structure(place(triangle, axes,
                              {grid.corner_m.x + (x + (i + 0.5) / samples) * grid.pixel_m.x,
                               grid.corner_m.y + (y + (j + 0.5) / samples) * grid.pixel_m.y},
                              z_m));

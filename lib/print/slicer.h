@@ -22,8 +22,10 @@
 namespace gonio::print {
 
 // What u and v of a micro-structure are: the platform's x and y; the mesh's texture coordinates times `texture_m`; or
-// two axes at right angles to every face's normal (geom/vector.h), along which places are counted.
-enum class StructureAxes { platform, texture, faces };
+// two axes at right angles to every face's normal, along which places are counted: those of geom/vector.h, or u along
+// the part of `direction` that lies in the face and v = n x u, a tangent field over the body (where a face stands at
+// right angles to `direction`: as faces).
+enum class StructureAxes { platform, texture, faces, direction };
 
 struct SlicedBody {
   std::string name;               // for messages
@@ -35,6 +37,7 @@ struct SlicedBody {
   std::map<std::int32_t, relief::ShareAt> by_label{};
   StructureAxes axes = StructureAxes::platform;
   double texture_m = 1;
+  Vec3 direction{0, 0, 1};          // of any length
   bool structured_beneath = false;  // surfaces that face away, too
   bool structured() const { return structure || !by_label.empty(); }
 };

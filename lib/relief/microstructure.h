@@ -2,7 +2,8 @@
 // controls: 0 at the bottom of the topmost voxel, 1 at its top. One file each in microstructures/.
 //
 // Place: metres along two axes of the surface (u, v), and in the body's own frame (x, y, z); a structure uses one or
-// the other. Where the surface has no axes of its own, u and v are x and y.
+// the other. Where the surface has no axes of its own, u and v are x and y. The directions of u and v at the place, in
+// the body's frame, tangent to the surface, are for structures of space that follow the surface.
 #pragma once
 #include <functional>
 #include <span>
@@ -17,6 +18,7 @@ namespace gonio::relief {
 struct SurfacePlace {
   Vec2 along_m;  // u, v
   Vec3 body_m;   // x, y, z
+  Vec3 u{1, 0, 0}, v{0, 1, 0};
 };
 struct MicrostructureFiles {  // what is not a number
   const io::GreyImage* picture = nullptr;

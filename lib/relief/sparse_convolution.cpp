@@ -51,8 +51,12 @@ double published_noise(Vec3 cells) {
   return 4 / (5 * std::cbrt(static_cast<double>(impulses))) * sum;
 }
 
+double published_noise_grey(double noise, double amplitude) {
+  return std::clamp(amplitude / 2 * noise + 0.5, 0.0, 1.0);
+}
+
 double published_noise_grey(Vec3 cells, double amplitude) {
-  return std::clamp(amplitude / 2 * published_noise(cells) + 0.5, 0.0, 1.0);
+  return published_noise_grey(published_noise(cells), amplitude);
 }
 
 }  // namespace gonio::relief

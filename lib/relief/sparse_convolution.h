@@ -22,5 +22,6 @@ namespace gonio::relief {
 double published_noise(Vec3 cells);
 // As a grey value: A / 2 noise + 1/2, between 0 and 1. A: amplitude; `cells`: the place times B, the frequency.
 double published_noise_grey(Vec3 cells, double amplitude);
+double published_noise_grey(double noise, double amplitude);
 
 }  // namespace gonio::relief

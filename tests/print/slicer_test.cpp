@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <mutex>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -93,6 +94,32 @@ TEST(Slicer, LabelsAndAxesOfFacesAreKept) {
   const LayerPicture layer = sliced(small_printer(), bodies)[0];
   EXPECT_NEAR(at(layer, 12, 15), 0.1, 1e-6);
   EXPECT_NEAR(at(layer, 27, 15), 0.9, 1e-6);
+}
+
+// The directions that a structure is given on the flat top, and on the roof's slope of 45 degrees towards +y.
+TEST(Slicer, AxesLieInTheFaces) {
+  std::vector<SlicedBody> bodies{box({-100 * um, -100 * um, 0}, {100 * um, 100 * um, 36 * um})};
+  for (Vec3& p : bodies[0].positions_m)
+    if (p.z > 0 && p.y > 0) p.y = 64 * um;  // the face towards +y leans by 45 degrees
+  for (const Vec3& p : bodies[0].positions_m) bodies[0].texture.push_back({p.y * 1e3, p.x * 1e3});
+  std::mutex lock;
+  Vec3 u, v;
+  bodies[0].structure = [&](const relief::SurfacePlace& p) {
+    const std::scoped_lock held(lock);
+    if (p.body_m.y > 66 * um) u = p.u, v = p.v;
+    return 0.5;
+  };
+  const double half = std::sqrt(0.5);
+  const auto seen = [&](StructureAxes axes, Vec3 expected_u, Vec3 expected_v) {
+    bodies[0].axes = axes;
+    sliced(small_printer(), bodies);
+    EXPECT_NEAR(norm(u - expected_u), 0, 1e-9) << static_cast<int>(axes) << ": " << u.x << ' ' << u.y << ' ' << u.z;
+    EXPECT_NEAR(norm(v - expected_v), 0, 1e-9) << static_cast<int>(axes) << ": " << v.x << ' ' << v.y << ' ' << v.z;
+  };
+  bodies[0].direction = {0, 0, 3};
+  seen(StructureAxes::direction, {0, -half, half}, {1, 0, 0});
+  seen(StructureAxes::platform, {1, 0, 0}, {0, half, -half});
+  seen(StructureAxes::texture, {0, half, -half}, {1, 0, 0});  // a mirrored texture
 }
 
 TEST(Slicer, WhatDoesNotFitIsRefused) {

@@ -219,6 +219,7 @@ std::vector<AskedStructure> structures_asked(Work& work) {
 void add_structures(Work& work) {
   draw_code(work);
   const std::string axes = work.call.text("axes");
+  const Vec3 direction = direction_of(work.call);
   std::vector<manifest::PrintedPart>& parts = work.entry().parts;
   for (const AskedStructure& asked : structures_asked(work)) {
     const relief::ShareAt share = relief::structure_of(work.call.document, asked.use, work.printer.layer_m,
@@ -240,9 +241,11 @@ void add_structures(Work& work) {
                   "on= takes a mesh's name, label= a label of its faces");
   }
   for (print::SlicedBody& body : work.bodies) {
-    body.axes = axes == "texture" ? print::StructureAxes::texture
-                : axes == "faces" ? print::StructureAxes::faces
-                                  : print::StructureAxes::platform;
+    body.axes = axes == "texture"     ? print::StructureAxes::texture
+                : axes == "faces"     ? print::StructureAxes::faces
+                : axes == "direction" ? print::StructureAxes::direction
+                                      : print::StructureAxes::platform;
+    body.direction = direction;
     body.texture_m = work.call.number("texture-length"), body.structured_beneath = work.call.flag("beneath");
   }
 }

@@ -73,11 +73,11 @@ void add_structures(std::vector<cli::Option>& all) {
                      "TEXT"));
   all.push_back({.name = "axes",
                  .type = Type::choice,
-                 .help =
-                     "What a structure's u and v are: the platform's x and y, the mesh's texture coordinates, or axes "
-                     "of each face.",
+                 .help = "What a structure's u and v are: the platform's x and y, the mesh's texture coordinates, axes "
+                         "of each face, or along each face the part of --direction that lies in it.",
                  .preset = "platform",
-                 .choices = {"platform", "texture", "faces"}});
+                 .choices = {"platform", "texture", "faces", "direction"}});
+  all.push_back(text("direction", "--axes direction: where u points to, on the platform.", "X,Y,Z"));
   all.push_back(length("texture-length", "--axes texture: length of 1 of the texture coordinates.", "1mm"));
   all.push_back(flag("beneath", "Structures on faces that look away from the projector, too."));
   all.push_back(count("samples", "Places of a structure over a pixel, along each axis.", "4", 1, 64));
@@ -191,8 +191,8 @@ void check_options(const cli::Invocation& call, Action action) {
       refuse(std::string("--") + option, "does nothing in this call", "leave it out");
   };
   only("structure", {Action::slice, Action::wish});
-  for (const char* option : {"unit", "scale", "largest-hole", "at", "turn", "gap", "code", "axes", "texture-length",
-                             "beneath", "coverage", "rays", "compensate", "iterations"})
+  for (const char* option : {"unit", "scale", "largest-hole", "at", "turn", "gap", "code", "axes", "direction",
+                             "texture-length", "beneath", "coverage", "rays", "compensate", "iterations"})
     only(option, {Action::slice});
   only("samples", {Action::slice, Action::wish});
   for (const char* option : {"predict"}) only(option, {Action::slice, Action::sample});
@@ -201,6 +201,20 @@ void check_options(const cli::Invocation& call, Action action) {
   for (const char* option : {"map-at", "map-turn", "search", "map-step"}) only(option, {Action::growth});
   if (call.given("window") && action != Action::predict && !call.flag("predict") && action != Action::wish)
     refuse("--window", "is of --predict", "add --predict");
+}
+
+Vec3 direction_of(const cli::Invocation& call) {
+  const std::string place = "--direction";
+  if (call.text("axes") != "direction") {
+    if (call.given("direction")) throw Error(Exit::usage, place, "does nothing without --axes direction", "give both");
+    return {0, 0, 1};
+  }
+  std::vector<double> all;
+  for (const std::string& piece : pieces(call.text("direction"), ','))
+    all.push_back(parse_quantity(piece, Dimension::none, place));
+  if (all.size() != 3 || !(norm(Vec3{all[0], all[1], all[2]}) > 0))
+    throw Error(Exit::usage, place, "\"" + call.text("direction") + "\" is no direction", "type, say, 0,0,1");
+  return {all[0], all[1], all[2]};
 }
 
 std::vector<double> lengths_of(const std::string& text, std::size_t count, const std::string& place) {

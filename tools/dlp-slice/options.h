@@ -16,6 +16,7 @@ Action action_of(const cli::Invocation& call);
 void check_options(const cli::Invocation& call, Action action);
 
 std::vector<double> lengths_of(const std::string& text, std::size_t count, const std::string& place);  // "1mm,2mm", m
+Vec3 direction_of(const cli::Invocation& call);  // --direction, where --axes asks for one; Error(usage)
 // "HEIGHT:THICKNESS,...": from a height on layers of that thickness; m.
 struct LayerStep {
   double from_m = 0, layer_m = 0;

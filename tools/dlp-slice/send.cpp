@@ -165,6 +165,7 @@ class Kept {
     std::string text = format("%d %d %d %d %lld\n", box.x_begin, box.y_begin, box.x_end, box.y_end,
                               static_cast<long long>(work.call.integer("iterations")));
     for (const char* option : {"coverage", "axes"}) text += work.call.text(option) + "\n";
+    if (work.call.given("direction")) text += work.call.text("direction") + "\n";
     text += format("%lld %lld %llu %.17g %d\n", static_cast<long long>(work.call.integer("samples")),
                    static_cast<long long>(work.call.integer("rays")), static_cast<unsigned long long>(work.call.seed),
                    work.call.number("texture-length"), work.call.flag("beneath") ? 1 : 0);

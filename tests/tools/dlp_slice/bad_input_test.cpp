@@ -70,6 +70,10 @@ TEST_F(DlpSlice, OptionsThatContradict) {
   refused({"--structure", "noise:label=3"}, 64, "label");
   refused({"--structure", "expression:u_m+w"}, 65, "expression");
   refused({"--axes", "texture", "--structure", "noise"}, 65, "texture");
+  refused({"--axes", "direction", "--structure", "noise"}, 64, "--direction: is missing");
+  refused({"--direction", "0,0,1", "--structure", "noise"}, 64, "without --axes direction");
+  refused({"--axes", "direction", "--direction", "0,0,0", "--structure", "noise"}, 64, "no direction");
+  refused({"--structure", "noise:stretch_m=1m"}, 65, "cells");
   refused({"--at", "1mm"}, 64, "--at");
   refused({"--at", "0mm,0mm", "--at", "1mm,0mm"}, 64, "--at");
   refused({"--layers", "1mm:18um"}, 64, "--layers");
