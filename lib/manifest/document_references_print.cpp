@@ -6,7 +6,6 @@
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/print.h"
 #include "manifest/sections/relief.h"
-#include "manifest/sections/surface.h"
 
 namespace gonio::manifest {
 
@@ -17,7 +16,6 @@ void check_prints(const Document& d) {
     must_exist(d.ground_noises, "ground_noises", print.ground, at + "/ground");
     must_exist(d.reliefs, "reliefs", print.relief, at + "/relief");
     must_exist(d.meshes, "meshes", print.mesh, at + "/mesh");
-    must_exist(d.surfaces, "surfaces", print.surface, at + "/surface");
     if (print.pixel_m.size() != 2)
       throw Error(Exit::data, at + "/pixel_m", "has " + std::to_string(print.pixel_m.size()) + " numbers",
                   "give two lengths [x, y]");

@@ -78,7 +78,6 @@ const std::vector<Field<Print>>& print_fields() {
       field("figures", &Print::figures, "", "of the job, by name; units end the names"),
       field("relief", &Print::relief, "", "the predicted surface, seen from the projector: name in reliefs"),
       field("mesh", &Print::mesh, "", "the predicted part: name in meshes"),
-      field("surface", &Print::surface, "", "how it reflects: name in surfaces"),
       field("measured", &Print::measured, "",
             "maps of what was printed, heights from any plane; explain(1) asks them")};
   return table;

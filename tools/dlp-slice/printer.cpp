@@ -40,7 +40,7 @@ std::string chosen(const cli::Invocation& call, const manifest::Document& from) 
 manifest::Print machine_of(const manifest::Print& entry) {
   manifest::Print machine = entry;
   machine.microstructures.clear(), machine.parts.clear(), machine.figures.clear();
-  machine.layers.clear(), machine.relief.clear(), machine.mesh.clear(), machine.surface.clear();
+  machine.layers.clear(), machine.relief.clear(), machine.mesh.clear();
   return machine;
 }
 

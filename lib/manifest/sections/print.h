@@ -60,7 +60,7 @@ struct Print {  // "prints"
   std::string layers;                     // file id of what is sent
   std::map<std::string, double> process;  // of the machine: exposure_s, lift_m, ...; units end the names
   std::map<std::string, double> figures;  // of the job: printed_layers, volume_m3, time_s, ...
-  std::string relief, mesh, surface;      // predicted: names in reliefs, meshes, surfaces
+  std::string relief, mesh;               // predicted: names in reliefs, meshes
   std::vector<MeasuredPrint> measured;
 };
 
