@@ -60,6 +60,9 @@ function(gonio_finish_library)
   gonio_registry(${GONIO_GENERATED}/microstructures.cpp Microstructure relief/microstructure.h
     "std::span<const gonio::relief::Microstructure* const> gonio::relief::all_microstructures()"
     gonio::relief::microstructures ${microstructure_files})
+  file(GLOB form_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/glass/forms/*.cpp)
+  gonio_registry(${GONIO_GENERATED}/glass_forms.cpp Form glass/form.h
+    "std::span<const gonio::glass::Form* const> gonio::glass::all_forms()" gonio::glass::forms ${form_files})
   file(GLOB solver_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/nrsfm/solvers/*.cpp)
   gonio_registry(${GONIO_GENERATED}/nrsfm_solvers.cpp Solver nrsfm/solve/solver.h
     "std::span<const gonio::nrsfm::Solver* const> gonio::nrsfm::all_solvers()" gonio::nrsfm::solvers ${solver_files})
@@ -110,7 +113,7 @@ function(gonio_finish_library)
     list(APPEND objects $<TARGET_OBJECTS:${room}>)
   endforeach()
   set(registries ${GONIO_GENERATED}/mechanisms.cpp ${GONIO_GENERATED}/domains.cpp
-      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/microstructures.cpp ${bindings}
+      ${GONIO_GENERATED}/table_models.cpp ${GONIO_GENERATED}/microstructures.cpp ${GONIO_GENERATED}/glass_forms.cpp ${bindings}
       ${GONIO_GENERATED}/nrsfm_solvers.cpp ${GONIO_GENERATED}/animatronics.cpp
       ${GONIO_GENERATED}/volume_formats.cpp ${GONIO_GENERATED}/archive_formats.cpp
       ${GONIO_GENERATED}/drivers.cpp ${GONIO_GENERATED}/view_patterns.cpp)

@@ -283,7 +283,7 @@ TriangleMesh parse_ply(std::string_view file, const std::string& place, const Pl
   return mesh;
 }
 
-void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const PlyWish& wish) {
+std::string encode_ply(const TriangleMesh& mesh, const PlyWish& wish) {
   std::string bytes = header_of(mesh, wish);
   std::string one;  // vertex: all are as long
   const auto append_vertex = [&mesh](std::string& to, std::size_t i) {
@@ -313,7 +313,11 @@ void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, cons
     for (const auto index : mesh.triangles[t]) append(bytes, static_cast<std::int32_t>(index));
     if (!mesh.labels.empty()) append(bytes, mesh.labels.at(t));
   }
-  write_file(path, bytes);
+  return bytes;
+}
+
+void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const PlyWish& wish) {
+  write_file(path, encode_ply(mesh, wish));
 }
 
 }  // namespace gonio::io

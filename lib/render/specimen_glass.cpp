@@ -14,6 +14,7 @@
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
+#include "mesh/revolve.h"
 #include "render/looking_at.h"
 #include "render/specimen_camera.h"
 
@@ -22,10 +23,7 @@ namespace {
 
 constexpr double bowl_radius_m = 0.06, bowl_wall_m = 0.005, cloth_m = 0.5;
 
-struct ProfilePoint {
-  double r, z;
-  Vec2 normal;  // (r, z), unit, out of the glass
-};
+using mesh::ProfilePoint;
 
 std::vector<ProfilePoint> profile(double radius_m, double wall_m) {
   constexpr int arc = 48, rim = 16;
@@ -87,32 +85,7 @@ io::Image sky_with_windows() {
 }
 
 io::TriangleMesh bowl(double radius_m, double thickness_m, int sectors) {
-  const std::vector<ProfilePoint> points = profile(radius_m, thickness_m);
-  io::TriangleMesh mesh;
-  const auto count = static_cast<std::uint32_t>(points.size()), around = static_cast<std::uint32_t>(sectors);
-  for (const ProfilePoint& p : points)
-    for (std::uint32_t s = 0; s < around; ++s) {
-      const double phi = 2 * pi * s / sectors;
-      mesh.positions_m.push_back({p.r * std::cos(phi), p.r * std::sin(phi), p.z});
-      mesh.normals.push_back({p.normal.x * std::cos(phi), p.normal.x * std::sin(phi), p.normal.y});
-    }
-  const auto low = static_cast<std::uint32_t>(mesh.positions_m.size()), high = low + 1;
-  const double inner_bottom_m = points.back().z;
-  mesh.positions_m.push_back({0, 0, 0});
-  mesh.normals.push_back({0, 0, -1});
-  mesh.positions_m.push_back({0, 0, inner_bottom_m});
-  mesh.normals.push_back({0, 0, 1});
-  for (std::uint32_t s = 0; s < around; ++s) {
-    const std::uint32_t t = (s + 1) % around;
-    mesh.triangles.push_back({low, t, s});
-    for (std::uint32_t ring = 0; ring + 1 < count; ++ring) {
-      const std::uint32_t a = ring * around + s, b = ring * around + t, c = a + around, d = b + around;
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({a, d, c});
-    }
-    mesh.triangles.push_back({high, (count - 1) * around + s, (count - 1) * around + t});
-  }
-  return mesh;
+  return mesh::revolved(profile(radius_m, thickness_m), sectors);
 }
 
 manifest::Document glass_specimen(const std::filesystem::path& out) {
