@@ -1,8 +1,9 @@
-# `cmake --install`: programs by their bare names in bin/, and beside it share/ with manual pages (which `man` finds because
+# `cmake --install`: programs by their bare names in bin/, and beside it lib/gonio with what they load, share/ with manual pages (which `man` finds because
 # bin/ is on the PATH), completions of three shells, the manifest's schemas and the documents.
 include(GNUInstallDirs)
 
 install(TARGETS ${GONIO_TOOL_NAMES} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS ${GONIO_MODULES} LIBRARY DESTINATION ${CMAKE_INSTALL_BINDIR}/../lib/gonio)
 
 # Every file of FOLDER that matches PATTERN goes to DESTINATION; a folder that does not exist has none.
 function(gonio_install_files folder pattern destination)

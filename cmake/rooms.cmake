@@ -2,11 +2,13 @@
 
 set(GONIO_ROOMS "" CACHE INTERNAL "")
 set(GONIO_THIRD_PARTY "" CACHE INTERNAL "")
+set(GONIO_MODULES "" CACHE INTERNAL "")
 set(GONIO_GENERATED ${CMAKE_BINARY_DIR}/generated)
 
 # gonio_room(NAME THIRD_PARTY...): lib/NAME/**.cpp as an object library. Vendored and system headers are -isystem.
 function(gonio_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/lib/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "_module\\.cpp$")
   gonio_in_units(sources lib ${name})
   set(GONIO_THIRD_PARTY ${GONIO_THIRD_PARTY} ${ARGN} CACHE INTERNAL "")
   if(NOT sources)
@@ -26,6 +28,22 @@ function(gonio_room name)
   target_link_libraries(room_${name} PRIVATE ${ARGN})
   gonio_allow_units(room_${name})
   set(GONIO_ROOMS ${GONIO_ROOMS} room_${name} CACHE INTERNAL "")
+endfunction()
+
+# gonio_module(SOURCE THIRD_PARTY...): lib/SOURCE_module.cpp, a shared library that is loaded when it is first called
+# (base/loaded_library.h), with libraries that would make the start of every program slow. It lies in lib/gonio of the
+# build and of an installation.
+function(gonio_module source)
+  get_filename_component(name ${source} NAME)
+  add_library(gonio_${name} MODULE ${CMAKE_SOURCE_DIR}/lib/${source}_module.cpp)
+  set_target_properties(gonio_${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET default
+                        LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/gonio)
+  target_include_directories(gonio_${name} PRIVATE ${CMAKE_SOURCE_DIR}/lib)
+  target_link_libraries(gonio_${name} PRIVATE ${ARGN})
+  if(NOT GONIO_SANITIZE AND NOT GONIO_FUZZ)
+    target_link_options(gonio_${name} PRIVATE -Wl,-z,defs)  # nothing of it may wait for what a program happens to have
+  endif()
+  set(GONIO_MODULES ${GONIO_MODULES} gonio_${name} CACHE INTERNAL "")
 endfunction()
 
 # gonio_bindings(FOLDER TYPE HEADER NAMESPACE LIST INNER): lib/FOLDER/*.cpp, one file for each mechanism that a simulator
@@ -130,6 +148,7 @@ function(gonio_finish_library)
   target_include_directories(gonio PUBLIC ${CMAKE_SOURCE_DIR}/lib)
   list(REMOVE_DUPLICATES GONIO_THIRD_PARTY)
   target_link_libraries(gonio PUBLIC ${GONIO_THIRD_PARTY})
+  add_dependencies(gonio ${GONIO_MODULES})
 endfunction()
 
 # A folder tools/<name> is a program: its program.cpp defines gonio::tools::<name_>::gonio_program(), what stands beside

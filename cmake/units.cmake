@@ -14,6 +14,7 @@ function(gonio_make_units tree root lines fewest how)
   foreach(folder IN LISTS ARGN)
     string(REPLACE "/" "_" name ${folder})
     file(${how} sources ${CMAKE_SOURCE_DIR}/${tree}/${folder}/*.cpp)
+    list(FILTER sources EXCLUDE REGEX "_module\\.cpp$")  # linked by themselves: gonio_module
     list(LENGTH sources count)
     if(NOT count LESS fewest)
       list(JOIN sources " " sources)

@@ -2,7 +2,6 @@
 // most runs of most programs never open one. CMake says which file the library is (GONIO_LIBRAW).
 #include "io/camera_raw.h"
 
-#include <dlfcn.h>
 #include <libraw/libraw.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/loaded_library.h"
 #include "base/lower_case.h"
 #include "base/text.h"
 
@@ -34,16 +34,9 @@ struct RawLibrary {
 
 const RawLibrary& raw_library() {
   static const RawLibrary loaded = [] {
-    void* const library = ::dlopen(GONIO_LIBRAW, RTLD_LAZY | RTLD_LOCAL);
     RawLibrary all{};
-    const auto find = [library](auto& function, const char* name) {
-      void* const found = library != nullptr ? ::dlsym(library, name) : nullptr;
-      if (found == nullptr) {
-        const char* const why = ::dlerror();
-        throw Error(Exit::internal, GONIO_LIBRAW, why != nullptr ? why : name,
-                    "install LibRaw as it was when this was built");
-      }
-      function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(found);
+    const auto find = [](auto& function, const char* name) {
+      load(function, GONIO_LIBRAW, name, "install LibRaw as it was when this was built");
     };
     find(all.init, "libraw_init");
     find(all.close, "libraw_close");

@@ -1,4 +1,4 @@
-// GDCM behind a narrow wall: its headers are read by one source.
+// GDCM behind a narrow wall: its headers are read by one source, a module.
 #pragma once
 #include <string>
 #include <string_view>

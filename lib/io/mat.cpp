@@ -1,5 +1,6 @@
-// MATLAB files by libmatio. Before it sees a file, the outer structure of a version 5 file is held against the file's
-// length: libmatio takes what a tag claims for granted.
+// MATLAB files by libmatio, which is loaded when the first one is read or written: HDF5 and what transports data over
+// networks come along, 35 libraries. CMake says which file it is (GONIO_MATIO). Before it sees a file, the outer
+// structure of a version 5 file is held against the file's length: libmatio takes what a tag claims for granted.
 #include "io/mat.h"
 
 #include <matio.h>
@@ -10,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/loaded_library.h"
 #include "io/little_endian.h"
 
 namespace gonio::io {
@@ -18,14 +20,61 @@ namespace {
 constexpr std::size_t head_bytes = 128, most_numbers = std::size_t{1} << 28, deepest = 16;
 constexpr double most_inflation = 1032;  // of deflate: a byte holds at most 1032
 const std::string remedy = "copy it again, or save it anew: save FILE ... -v7";
-std::mutex matio;  // its HDF5 part is not re-entrant
+std::mutex one_at_a_time;  // its HDF5 part is not re-entrant
+
+// libmatio's functions by their own declarations.
+struct Matio {
+  decltype(&Mat_Open) open;
+  decltype(&Mat_CreateVer) create;
+  decltype(&Mat_Close) close;
+  decltype(&Mat_Rewind) rewind;
+  decltype(&Mat_VarReadNext) next;
+  decltype(&Mat_VarReadNextInfo) next_head;
+  decltype(&Mat_VarWrite) write;
+  decltype(&Mat_VarCreate) made;
+  decltype(&Mat_VarCreateStruct2) made_structure;
+  decltype(&Mat_VarFree) free;
+  decltype(&Mat_SizeOf) size_of;
+  decltype(&Mat_VarGetCell) cell;
+  decltype(&Mat_VarGetNumberOfFields) fields;
+  decltype(&Mat_VarGetStructFieldnames) names;
+  decltype(&Mat_VarGetStructFieldByIndex) member;
+  decltype(&Mat_VarSetStructFieldByName) set_member;
+};
+
+const Matio& matio() {
+  static const Matio loaded = [] {
+    Matio all{};
+    const auto find = [](auto& function, const char* name) {
+      load(function, GONIO_MATIO, name, "install libmatio as it was when this was built");
+    };
+    find(all.open, "Mat_Open");
+    find(all.create, "Mat_CreateVer");
+    find(all.close, "Mat_Close");
+    find(all.rewind, "Mat_Rewind");
+    find(all.next, "Mat_VarReadNext");
+    find(all.next_head, "Mat_VarReadNextInfo");
+    find(all.write, "Mat_VarWrite");
+    find(all.made, "Mat_VarCreate");
+    find(all.made_structure, "Mat_VarCreateStruct2");
+    find(all.free, "Mat_VarFree");
+    find(all.size_of, "Mat_SizeOf");
+    find(all.cell, "Mat_VarGetCell");
+    find(all.fields, "Mat_VarGetNumberOfFields");
+    find(all.names, "Mat_VarGetStructFieldnames");
+    find(all.member, "Mat_VarGetStructFieldByIndex");
+    find(all.set_member, "Mat_VarSetStructFieldByName");
+    return all;
+  }();
+  return loaded;
+}
 
 struct VariableFree {
-  void operator()(matvar_t* v) const { Mat_VarFree(v); }
+  void operator()(matvar_t* v) const { matio().free(v); }
 };
 using Handle = std::unique_ptr<matvar_t, VariableFree>;
 struct FileClose {
-  void operator()(mat_t* f) const { Mat_Close(f); }
+  void operator()(mat_t* f) const { matio().close(f); }
 };
 using FileHandle = std::unique_ptr<mat_t, FileClose>;
 
@@ -77,7 +126,8 @@ void append(const matvar_t& v, std::size_t count, std::vector<double>& out) {
 
 void read_numbers(const matvar_t& v, std::size_t count, MatVariable& out, const std::string& place) {
   if (count == 0) return;
-  if (v.data == nullptr || v.nbytes < count * Mat_SizeOf(v.data_type)) refuse(place, "has no data behind its head");
+  if (v.data == nullptr || v.nbytes < count * matio().size_of(v.data_type))
+    refuse(place, "has no data behind its head");
   switch (v.data_type) {
     case MAT_T_DOUBLE: return append<double>(v, count, out.values);
     case MAT_T_SINGLE: return append<float>(v, count, out.values);
@@ -103,7 +153,7 @@ void append_utf8(std::string& text, std::uint32_t c) {
 std::string read_text(const matvar_t& v, std::size_t count) {
   std::string text;
   if (v.data == nullptr) return text;
-  const std::size_t width = Mat_SizeOf(v.data_type), there = width == 0 ? 0 : std::min(count, v.nbytes / width);
+  const std::size_t width = matio().size_of(v.data_type), there = width == 0 ? 0 : std::min(count, v.nbytes / width);
   for (std::size_t i = 0; i < there; ++i) {
     if (width == 2)
       append_utf8(text, static_cast<const std::uint16_t*>(v.data)[i]);
@@ -117,13 +167,13 @@ MatVariable variable_of(const matvar_t* v, const std::string& place, std::size_t
 
 void read_members(const matvar_t& v, std::size_t count, MatVariable& out, const std::string& place, std::size_t depth) {
   auto* source = const_cast<matvar_t*>(&v);  // libmatio's getters change nothing
-  const unsigned fields = Mat_VarGetNumberOfFields(source);
-  char* const* names = Mat_VarGetStructFieldnames(source);
+  const unsigned fields = matio().fields(source);
+  char* const* names = matio().names(source);
   if (fields > 0 && (names == nullptr || v.data == nullptr)) refuse(place, "is a struct without fields' names");
   for (std::size_t i = 0; i < count; ++i) {
     std::map<std::string, MatVariable> element;
     for (unsigned k = 0; k < fields; ++k) {
-      const matvar_t* member = Mat_VarGetStructFieldByIndex(source, k, i);
+      const matvar_t* member = matio().member(source, k, i);
       const std::string at = place + (count > 1 ? "(" + std::to_string(i + 1) + ")" : "") + "." + names[k];
       if (member != nullptr) element.emplace(names[k], variable_of(member, at, depth + 1));
     }
@@ -153,7 +203,7 @@ MatVariable variable_of(const matvar_t* v, const std::string& place, std::size_t
     case MAT_C_CELL:
       out.kind = MatVariable::Kind::cells;
       for (std::size_t i = 0; i < count; ++i) {
-        const matvar_t* cell = Mat_VarGetCell(const_cast<matvar_t*>(v), static_cast<int>(i));
+        const matvar_t* cell = matio().cell(const_cast<matvar_t*>(v), static_cast<int>(i));
         out.cells.emplace_back();
         if (cell == nullptr)
           out.cells.back().size = {0, 0};
@@ -174,7 +224,7 @@ MatVariable variable_of(const matvar_t* v, const std::string& place, std::size_t
 
 // What the heads claim, before any data are read.
 void check_claims(mat_t* file, std::size_t bytes, const std::string& place) {
-  while (const Handle v{Mat_VarReadNextInfo(file)}) {
+  while (const Handle v{matio().next_head(file)}) {
     double count = 1;
     for (int i = 0; i < v->rank; ++i) count *= static_cast<double>(v->dims[i]);
     const std::string at = place + "#" + (v->name == nullptr ? "" : v->name);
@@ -182,7 +232,7 @@ void check_claims(mat_t* file, std::size_t bytes, const std::string& place) {
     if (count > static_cast<double>(most_numbers) || count > most_inflation * static_cast<double>(bytes))
       refuse(at, "claims " + std::to_string(count) + " numbers, which " + std::to_string(bytes) + " bytes cannot hold");
   }
-  Mat_Rewind(file);
+  matio().rewind(file);
 }
 
 }  // namespace
@@ -195,13 +245,13 @@ MatFile read_mat(const std::filesystem::path& path) {
     bytes = file.size();
     if (version_of(file, place) == Version::v5) expected = count_elements(file, place);
   }
-  const std::lock_guard lock(matio);
-  const FileHandle file{Mat_Open(place.c_str(), MAT_ACC_RDONLY)};
+  const std::lock_guard lock(one_at_a_time);
+  const FileHandle file{matio().open(place.c_str(), MAT_ACC_RDONLY)};
   if (!file) refuse(place, "is no MATLAB file that libmatio can open");
   check_claims(file.get(), bytes, place);
   MatFile out;
   std::size_t found = 0;
-  while (const Handle v{Mat_VarReadNext(file.get())}) {
+  while (const Handle v{matio().next(file.get())}) {
     ++found;
     if (v->name == nullptr || *v->name == 0) continue;  // MATLAB's own bookkeeping of objects
     out[v->name] = variable_of(v.get(), place + "#" + v->name, 0);
@@ -219,8 +269,8 @@ Handle made(const std::string& name, const MatVariable& v);
 // libmatio copies what it is given and changes none of it.
 Handle created(const std::string& name, matio_classes kind, matio_types type, std::vector<std::size_t> size,
                const void* data, int options = 0) {
-  return Handle{Mat_VarCreate(name.c_str(), kind, type, static_cast<int>(size.size()), size.data(),
-                              const_cast<void*>(data), options)};
+  return Handle{matio().made(name.c_str(), kind, type, static_cast<int>(size.size()), size.data(),
+                             const_cast<void*>(data), options)};
 }
 
 Handle made_structure(const std::string& name, const MatVariable& v) {
@@ -228,11 +278,11 @@ Handle made_structure(const std::string& name, const MatVariable& v) {
   if (!v.elements.empty())
     for (const auto& [key, member] : v.elements.front()) names.push_back(key.c_str());
   names.push_back(nullptr);
-  Handle out{Mat_VarCreateStruct2(name.c_str(), static_cast<int>(v.size.size()), v.size.data(), names.data())};
+  Handle out{matio().made_structure(name.c_str(), static_cast<int>(v.size.size()), v.size.data(), names.data())};
   if (!out) return out;
   for (std::size_t i = 0; i < v.elements.size(); ++i)
     for (const auto& [key, member] : v.elements[i])
-      Mat_VarSetStructFieldByName(out.get(), key.c_str(), i, made(key, member).release());
+      matio().set_member(out.get(), key.c_str(), i, made(key, member).release());
   return out;
 }
 
@@ -272,12 +322,12 @@ void check_size(const std::string& name, const MatVariable& v) {
 void write_mat(const MatFile& variables, const std::filesystem::path& path) {
   for (const auto& [name, v] : variables) check_size(name, v);
   write_file_through(path, [&](const std::filesystem::path& temporary) {
-    const std::lock_guard lock(matio);
-    const FileHandle file{Mat_CreateVer(temporary.c_str(), "MATLAB 5.0 MAT-file, written by gonio", MAT_FT_MAT5)};
+    const std::lock_guard lock(one_at_a_time);
+    const FileHandle file{matio().create(temporary.c_str(), "MATLAB 5.0 MAT-file, written by gonio", MAT_FT_MAT5)};
     if (!file) throw Error(Exit::cannot_create, path.string(), "cannot be created");
     for (const auto& [name, v] : variables) {
       const Handle out = made(name, v);
-      if (!out || Mat_VarWrite(file.get(), out.get(), MAT_COMPRESSION_ZLIB) != 0)
+      if (!out || matio().write(file.get(), out.get(), MAT_COMPRESSION_ZLIB) != 0)
         throw Error(Exit::io, path.string(), "variable " + name + " could not be written");
     }
   });

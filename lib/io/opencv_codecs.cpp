@@ -2,11 +2,9 @@
 // (GONIO_IMGCODECS), and the declarations are OpenCV's own.
 #include "io/opencv_codecs.h"
 
-#include <dlfcn.h>
-
 #include <opencv2/imgcodecs.hpp>
 
-#include "base/error.h"
+#include "base/loaded_library.h"
 
 namespace gonio::io {
 namespace {
@@ -22,23 +20,14 @@ struct Codecs {
   Encodes encode;
 };
 
-void* found(void* in, const char* name) {
-  void* const function = in != nullptr ? ::dlsym(in, name) : nullptr;
-  if (function == nullptr) {
-    const char* const why = ::dlerror();
-    throw Error(Exit::internal, GONIO_IMGCODECS, why != nullptr ? why : name,
-                "install OpenCV as it was when this was built");
-  }
-  return function;
-}
-
 const Codecs& codecs() {
   static const Codecs loaded = [] {
-    void* const library = ::dlopen(GONIO_IMGCODECS, RTLD_LAZY | RTLD_LOCAL);
+    const auto found = [](const char* name) {
+      return function_in(GONIO_IMGCODECS, name, "install OpenCV as it was when this was built");
+    };
     return Codecs{
-        reinterpret_cast<Decodes>(found(library, "_ZN2cv8imdecodeERKNS_11_InputArrayEiPNS_3MatE")),
-        reinterpret_cast<Encodes>(found(library,
-                                        "_ZN2cv8imencodeERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKNS_"
+        reinterpret_cast<Decodes>(found("_ZN2cv8imdecodeERKNS_11_InputArrayEiPNS_3MatE")),
+        reinterpret_cast<Encodes>(found("_ZN2cv8imencodeERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKNS_"
                                         "11_InputArrayERSt6vectorIhSaIhEERKSB_IiSaIiEE"))};
   }();
   return loaded;

@@ -6,61 +6,23 @@
 // shapes its answer is therefore where the search for a proof begins (body.h); without a proof, what is certain counts.
 #include "acquisition/motion/exact_distance.h"
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/cylinder.h>
-#include <fcl/geometry/shape/sphere.h>
-#include <fcl/narrowphase/distance.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/motion/exact_distance_module.h"
+#include "base/loaded_library.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_tree.h"
 
 namespace gonio::acquisition {
-namespace {
-
-using Geometry = std::unique_ptr<const fcl::CollisionGeometryd>;
-using TriangleModel = fcl::BVHModel<fcl::OBBRSSd>;
-
-fcl::Vector3d vector_of(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-
-fcl::Transform3d transform_of(const PlacedBody& at) {
-  fcl::Transform3d transform = fcl::Transform3d::Identity();
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) transform.linear()(i, j) = at.rotation(i, j);
-  transform.translation() = vector_of(at.origin_m);
-  return transform;
-}
-
-Geometry geometry_of(const Solid& solid) {
-  const Vec3 s = solid.sides_m;
-  switch (solid.shape) {
-    case Solid::Shape::box: return std::make_unique<fcl::Boxd>(s.x, s.y, s.z);
-    case Solid::Shape::ball: return std::make_unique<fcl::Sphered>(s.x);
-    case Solid::Shape::cylinder: return std::make_unique<fcl::Cylinderd>(s.x, s.y);
-    case Solid::Shape::mesh: break;
-  }
-  auto model = std::make_unique<TriangleModel>();
-  model->beginModel(static_cast<int>(solid.triangles.size()), static_cast<int>(3 * solid.triangles.size()));
-  for (const auto& [a, b, c] : solid.triangles)
-    model->addTriangle(vector_of(solid.vertices_m[a]), vector_of(solid.vertices_m[b]), vector_of(solid.vertices_m[c]));
-  model->endModel();
-  return model;
-}
-
-}  // namespace
 
 struct ExactDistances::Shapes {
   struct Shape {
-    Geometry geometry;
     std::unique_ptr<const mesh::TriangleTree> inside{};  // of closed meshes
     Vec3 inner_m{};                                      // a point of the solid, its own coordinates
   };
   const std::vector<Body>& bodies;
+  std::unique_ptr<const SurfaceDistances> surfaces;
   std::vector<Shape> shapes;
 
   // Is a point of `other` inside of the closed mesh `closed`? Only where no surfaces cross: then one point tells.
@@ -85,9 +47,12 @@ struct ExactDistances::Shapes {
 };
 
 ExactDistances::ExactDistances(const std::vector<Body>& bodies) {
-  auto shapes = std::make_unique<Shapes>(Shapes{bodies, {}});
+  static const auto surfaces_of =
+      loaded_from_module<decltype(gonio_surface_distances)>("exact_distance", "gonio_surface_distances");
+  auto shapes =
+      std::make_unique<Shapes>(Shapes{bodies, std::unique_ptr<const SurfaceDistances>(surfaces_of(bodies)), {}});
   for (const Body& body : bodies) {
-    Shapes::Shape shape{geometry_of(*body.solid)};
+    Shapes::Shape shape;
     if (body.solid->shape == Solid::Shape::mesh) {
       shape.inner_m = body.solid->vertices_m[body.solid->triangles.front()[0]];
       mesh::Mesh mesh;
@@ -104,17 +69,12 @@ ExactDistances::ExactDistances(const std::vector<Body>& bodies) {
 ExactDistances::~ExactDistances() = default;
 
 double ExactDistances::between(std::size_t a, const PlacedBody& at_a, std::size_t b, const PlacedBody& at_b) const {
-  fcl::DistanceRequestd request;
-  request.distance_tolerance = 1e-9;
-  fcl::DistanceResultd result;
   const auto convex = [](const Body& body) { return body.solid->shape != Solid::Shape::mesh; };
   const Body &body_a = shapes_->bodies[a], &body_b = shapes_->bodies[b];
-  request.enable_nearest_points = convex(body_a) && convex(body_b);
-  const double found = fcl::distance(shapes_->shapes[a].geometry.get(), transform_of(at_a),
-                                     shapes_->shapes[b].geometry.get(), transform_of(at_b), request, result);
-  if (request.enable_nearest_points) {
-    const fcl::Vector3d& on_b = result.nearest_points[1];
-    Vec3 start{on_b.x(), on_b.y(), on_b.z()};
+  const bool both_convex = convex(body_a) && convex(body_b);
+  Vec3 start;
+  const double found = shapes_->surfaces->between(a, at_a, b, at_b, both_convex ? &start : nullptr);
+  if (both_convex) {
     if (!(found > 0) || !is_finite(start)) start = at_b.middle_m;
     const Bounded bounded = bounded_distance(body_a, at_a, body_b, at_b, start);
     return std::max(bounded.distance_m - (bounded.too_large_m > 1e-6 ? bounded.too_large_m : 0), 0.0);

@@ -1,27 +1,18 @@
 // See way.h. The space that is searched holds the joints that move, each times how far it carries solids (reach.h): a
-// distance there is a distance in metres. OMPL's own random numbers come from one sequence for the whole program, so
-// that the planner gets a sampler of ours, and neighbours are found without any.
-#include <ompl/base/spaces/RealVectorStateSpace.h>
-#include <ompl/base/terminationconditions/IterationTerminationCondition.h>
-#include <ompl/datastructures/NearestNeighborsLinear.h>
-#include <ompl/geometric/PathGeometric.h>
-#include <ompl/geometric/planners/rrt/RRTConnect.h>
-#include <ompl/util/Console.h>
-
+// distance there is a distance in metres. The search is OMPL's, in a module.
 #include <algorithm>
 #include <cmath>
 
+#include "acquisition/motion/joint_way_module.h"
 #include "acquisition/motion/line.h"
 #include "acquisition/motion/reach.h"
 #include "acquisition/motion/way.h"
+#include "base/loaded_library.h"
 #include "base/random.h"
 
 namespace gonio::acquisition {
 namespace {
 
-namespace ob = ompl::base;
-
-constexpr double longest_branch_m = 0.8;  // of the search trees
 constexpr int shortcuts = 80;
 
 struct MovingJoint {
@@ -31,7 +22,7 @@ struct MovingJoint {
   double lower_rad, upper_rad;  // of the search
 };
 
-class SearchSpace {
+class SearchSpace : public SearchedSpace {
  public:
   SearchSpace(const Laboratory& laboratory, const Surroundings& surroundings, const State& from, const State& to)
       : laboratory_(laboratory), surroundings_(surroundings), rest_(between(laboratory, from, from, 0)) {
@@ -54,10 +45,19 @@ class SearchSpace {
       state[joints_[k].arm->name][joints_[k].joint] = values[k] / joints_[k].metres_per_rad;
     return state;
   }
-  void put(const State& state, double* values) const {
-    for (std::size_t k = 0; k < joints_.size(); ++k)
-      values[k] = joints_of(*joints_[k].arm, state)[joints_[k].joint] * joints_[k].metres_per_rad;
+  std::vector<double> values_of(const State& state) const {
+    std::vector<double> values;
+    for (const MovingJoint& j : joints_) values.push_back(joints_of(*j.arm, state)[j.joint] * j.metres_per_rad);
+    return values;
   }
+  unsigned dimensions() const override { return static_cast<unsigned>(joints_.size()); }
+  double lower(unsigned k) const override { return joints_[k].lower_rad * joints_[k].metres_per_rad; }
+  double upper(unsigned k) const override { return joints_[k].upper_rad * joints_[k].metres_per_rad; }
+  double drawn(unsigned k, Random& random) const override {
+    return random.uniform(joints_[k].lower_rad, joints_[k].upper_rad) * joints_[k].metres_per_rad;
+  }
+  bool open(const double* at) const override { return open(state_of(at)); }
+  bool open(const double* from, const double* to) const override { return open(state_of(from), state_of(to)); }
   bool open(const State& state) const {
     return broken_at(laboratory_, state, smallest_singular(laboratory_, state)).empty() &&
            surroundings_.free(state, laboratory_.margin_m);
@@ -72,90 +72,13 @@ class SearchSpace {
   std::vector<MovingJoint> joints_;
 };
 
-double* values_of(ob::State* state) {
-  return state->as<ob::RealVectorStateSpace::StateType>()->values;
-}
-const double* values_of(const ob::State* state) {
-  return state->as<ob::RealVectorStateSpace::StateType>()->values;
-}
-
-class SeededSampler : public ob::StateSampler {
- public:
-  SeededSampler(const ob::StateSpace* space, const SearchSpace& search, std::uint64_t seed)
-      : ob::StateSampler(space), search_(search), random_(seed, 21) {}
-  void sampleUniform(ob::State* state) override {
-    double* values = values_of(state);
-    for (std::size_t k = 0; k < search_.joints().size(); ++k) {
-      const MovingJoint& j = search_.joints()[k];
-      values[k] = random_.uniform(j.lower_rad, j.upper_rad) * j.metres_per_rad;
-    }
-  }
-  void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
-    for (std::size_t k = 0; k < search_.joints().size(); ++k)
-      values_of(state)[k] = values_of(near)[k] + random_.uniform(-distance, distance);
-    space_->enforceBounds(state);
-  }
-  void sampleGaussian(ob::State* state, const ob::State* mean, double deviation) override {
-    for (std::size_t k = 0; k < search_.joints().size(); ++k)
-      values_of(state)[k] = values_of(mean)[k] + random_.normal() * deviation;
-    space_->enforceBounds(state);
-  }
-
- private:
-  const SearchSpace& search_;
-  Random random_;
-};
-
-class LineValidator : public ob::MotionValidator {
- public:
-  LineValidator(const ob::SpaceInformationPtr& information, const SearchSpace& search)
-      : ob::MotionValidator(information), search_(search) {}
-  bool checkMotion(const ob::State* from, const ob::State* to) const override {
-    return search_.open(search_.state_of(values_of(from)), search_.state_of(values_of(to)));
-  }
-  // How far it stays open is not asked by RRT-Connect.
-  bool checkMotion(const ob::State* from, const ob::State* to, std::pair<ob::State*, double>& last) const override {
-    last.second = 0;
-    return checkMotion(from, to);
-  }
-
- private:
-  const SearchSpace& search_;
-};
-
 std::optional<Way> searched(const SearchSpace& search, const State& from, const State& to, std::uint64_t seed,
                             int tries) {
-  ompl::msg::noOutputHandler();
-  const auto dimensions = static_cast<unsigned>(search.joints().size());
-  const auto space = std::make_shared<ob::RealVectorStateSpace>(dimensions);
-  ob::RealVectorBounds bounds(dimensions);
-  for (unsigned k = 0; k < dimensions; ++k) {
-    const MovingJoint& j = search.joints()[k];
-    bounds.setLow(k, j.lower_rad * j.metres_per_rad - 1e-6);
-    bounds.setHigh(k, j.upper_rad * j.metres_per_rad + 1e-6);
-  }
-  space->setBounds(bounds);
-  space->setStateSamplerAllocator(
-      [&](const ob::StateSpace* s) { return std::make_shared<SeededSampler>(s, search, seed); });
-  const auto information = std::make_shared<ob::SpaceInformation>(space);
-  information->setStateValidityChecker([&](const ob::State* s) { return search.open(search.state_of(values_of(s))); });
-  information->setMotionValidator(std::make_shared<LineValidator>(information, search));
-  information->setup();
-  const auto problem = std::make_shared<ob::ProblemDefinition>(information);
-  ob::ScopedState<> start(space), goal(space);
-  search.put(from, values_of(start.get()));
-  search.put(to, values_of(goal.get()));
-  problem->setStartAndGoalStates(start, goal);
-  ompl::geometric::RRTConnect planner(information);
-  planner.setNearestNeighbors<ompl::NearestNeighborsLinear>();
-  planner.setRange(longest_branch_m);
-  planner.setProblemDefinition(problem);
-  planner.setup();
-  ob::IterationTerminationCondition until(static_cast<unsigned>(std::max(tries, 1)));
-  if (planner.solve(until) != ob::PlannerStatus::EXACT_SOLUTION) return std::nullopt;
+  static const auto search_way = loaded_from_module<decltype(gonio_joint_way)>("joint_way", "gonio_joint_way");
+  std::vector<std::vector<double>> places;
+  if (!search_way(search, search.values_of(from), search.values_of(to), seed, tries, places)) return std::nullopt;
   Way way;
-  for (const ob::State* state : problem->getSolutionPath()->as<ompl::geometric::PathGeometric>()->getStates())
-    way.push_back(search.state_of(values_of(state)));
+  for (const std::vector<double>& place : places) way.push_back(search.state_of(place.data()));
   way.front() = from;
   way.back() = to;
   return way;

@@ -11,17 +11,17 @@
 //   out between two depths, a dozen in a million: the mesh has a hole there. On standard error it remarks on residuals
 //   that are small. Both are turned away meanwhile.
 // - reconstruct() makes a search tree that nothing asks: performReconstruction() goes straight to work. libpcl_surface
-//   brings VTK along, for a hull that nobody here asks for: only programs that come here load it.
+//   brings VTK along, for a hull that nobody here asks for: a module is linked with it and loaded here.
 #include "mesh/reconstruct/screened_poisson.h"
 
 #include <fcntl.h>
-#include <pcl/point_types.h>
-#include <pcl/surface/poisson.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
+
+#include "base/loaded_library.h"
+#include "mesh/reconstruct/screened_poisson_module.h"
 
 namespace gonio::mesh {
 namespace {
@@ -62,34 +62,24 @@ io::TriangleMesh screened_poisson(const std::vector<Vec3>& positions_m, const st
   const Vec3 middle = 0.5 * (low + high);
   const double extent = max_component(high - low);
   if (!(extent > 0)) return mesh;
-  const auto cloud = std::make_shared<pcl::PointCloud<pcl::PointNormal>>();
-  cloud->reserve(positions_m.size());
+  std::vector<float> points, vertices;
+  points.reserve(6 * positions_m.size());
   for (std::size_t i = 0; i < positions_m.size(); ++i) {
     const Vec3 p = (positions_m[i] - middle) / extent, n = normals[i];
-    pcl::PointNormal one;
-    one.x = static_cast<float>(p.x), one.y = static_cast<float>(p.y), one.z = static_cast<float>(p.z);
-    one.normal_x = static_cast<float>(n.x), one.normal_y = static_cast<float>(n.y);
-    one.normal_z = static_cast<float>(n.z);
-    cloud->push_back(one);
+    for (const double value : {p.x, p.y, p.z, n.x, n.y, n.z}) points.push_back(static_cast<float>(value));
   }
-  pcl::Poisson<pcl::PointNormal> poisson;
-  poisson.setDepth(depth);
-  poisson.setMinDepth(std::min(5, depth));
-  poisson.setThreads(1);
-  poisson.setConfidence(by_length);
-  poisson.setInputCloud(cloud);
-  pcl::PointCloud<pcl::PointNormal> vertices;
-  std::vector<pcl::Vertices> polygons;
+  static const auto reconstruct =
+      loaded_from_module<decltype(gonio_screened_poisson)>("screened_poisson", "gonio_screened_poisson");
+  std::vector<std::uint32_t> polygons;
   {
     const Mute out(stdout, STDOUT_FILENO), err(stderr, STDERR_FILENO);
-    poisson.performReconstruction(vertices, polygons);
+    reconstruct(points, depth, by_length, vertices, polygons);
   }
-  for (const pcl::PointNormal& v : vertices) mesh.positions_m.push_back(middle + Vec3{v.x, v.y, v.z} * extent);
-  for (const pcl::Vertices& polygon : polygons)
-    for (std::size_t k = 2; k < polygon.vertices.size(); ++k)
-      mesh.triangles.push_back({static_cast<std::uint32_t>(polygon.vertices[0]),
-                                static_cast<std::uint32_t>(polygon.vertices[k - 1]),
-                                static_cast<std::uint32_t>(polygon.vertices[k])});
+  for (std::size_t i = 0; i < vertices.size(); i += 3)
+    mesh.positions_m.push_back(middle + Vec3{vertices[i], vertices[i + 1], vertices[i + 2]} * extent);
+  for (std::size_t at = 0; at < polygons.size(); at += 1 + polygons[at])
+    for (std::size_t k = 3; k <= polygons[at]; ++k)
+      mesh.triangles.push_back({polygons[at + 1], polygons[at + k - 1], polygons[at + k]});
   return mesh;
 }
 

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
-#include <opencv2/video/tracking.hpp>
 
+#include "base/loaded_library.h"
 #include "base/parallel.h"
 #include "linear/svd.h"
+#include "nrsfm/make/optical_flow_module.h"
 #include "nrsfm/make/patch.h"
 
 namespace gonio::nrsfm {
@@ -75,7 +76,9 @@ void Tracker::advance(GreyPicture picture) {
   Impl& i = *impl_;
   const cv::Mat now(picture.height, picture.width, CV_8UC1, picture.value.data());
   std::vector<cv::Mat> pyramid;
-  cv::buildOpticalFlowPyramid(now, pyramid, i.window(), levels);
+  static const auto build = loaded_from_module<decltype(gonio_flow_pyramid)>("optical_flow", "gonio_flow_pyramid");
+  static const auto flow = loaded_from_module<decltype(gonio_flow)>("optical_flow", "gonio_flow");
+  build(now, pyramid, i.window(), levels);
   std::vector<cv::Point2f> from, to, back;
   std::vector<std::size_t> who;
   for (std::size_t p = 0; p < i.points.size(); ++p) {
@@ -85,8 +88,8 @@ void Tracker::advance(GreyPicture picture) {
   }
   if (!who.empty()) {
     std::vector<std::uint8_t> found, returned;
-    cv::calcOpticalFlowPyrLK(i.pyramid, pyramid, from, to, found, cv::noArray(), i.window(), levels);
-    cv::calcOpticalFlowPyrLK(pyramid, i.pyramid, to, back, returned, cv::noArray(), i.window(), levels);
+    flow(i.pyramid, pyramid, from, to, found, i.window(), levels);
+    flow(pyramid, i.pyramid, to, back, returned, i.window(), levels);
     parallel_for(0, who.size(), [&](std::size_t k) {
       Impl::Followed& f = i.points[who[k]];
       const bool there_and_back = found[k] && returned[k] && cv::norm(back[k] - from[k]) <= i.options.back_px;
