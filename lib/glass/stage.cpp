@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "camera/intrinsics.h"
 #include "glass/patterns.h"
+#include "io/encode_ply.h"
 #include "io/exr.h"
 #include "io/picture.h"
 #include "manifest/image_list.h"

@@ -1,7 +1,7 @@
 // PLY meshes (Turk 1994, "The PLY Polygon File Format"). Own code, because coordinates must keep their double
 // precision. What it does not do: triangle strips, edges; elements and properties that it does not know and nobody
 // asked for are skipped.
-#include "io/ply.h"
+#include "io/encode_ply.h"
 
 #include <algorithm>
 #include <array>

@@ -35,7 +35,6 @@ TriangleMesh read_ply(const std::filesystem::path& path, const PlyWish& wish = {
 // A whole file; `place` names it in errors.
 TriangleMesh parse_ply(std::string_view file, const std::string& place, const PlyWish& wish = {});
 // Binary little endian, double coordinates; properties under the names that `wish` gave them.
-std::string encode_ply(const TriangleMesh& mesh, const PlyWish& wish = {});
 void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const PlyWish& wish = {});
 
 }  // namespace gonio::io

@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "glass/glasses.h"
 #include "glass/implicit.h"
+#include "io/encode_ply.h"
 #include "glass/object.h"
 #include "mesh/inside.h"
 #include "mesh/mesh.h"
