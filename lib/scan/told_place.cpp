@@ -2,9 +2,13 @@
 #include "scan/told_place.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 
+#include "base/random.h"
 #include "scan/shift_fit.h"
 
 namespace gonio::scan {
@@ -23,6 +27,11 @@ double light_of(std::span<const double> amplitudes, double x) {
     before = here, here = next;
   }
   return sum;
+}
+
+// The product as it is written: the operator asks of each whether it is infinite.
+std::complex<double> product(std::complex<double> a, std::complex<double> b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
 }  // namespace
@@ -55,8 +64,19 @@ ToldPlace::ToldPlace(const Sequence& sequence, Axis axis) : size_(sequence.size(
   }
 }
 
-// Of ((1 + contrast cos x) / 2)^gamma, over the first: ratios from the last to the first, where they converge.
+// Of ((1 + contrast cos x) / 2)^gamma, over the first: ratios from the last to the first, where they converge. Pixel
+// after pixel asks for the same exponent, its neighbour for a derivative, and each set's contrast: what a thread has
+// found stays.
 ToldPlace::Amplitudes ToldPlace::of_power(double gamma, double contrast) {
+  struct Found {
+    double gamma = std::numeric_limits<double>::quiet_NaN(), contrast = 0;
+    Amplitudes a{};
+  };
+  thread_local std::array<Found, 64> all;
+  const std::uint64_t mixed =
+      split_mix(std::bit_cast<std::uint64_t>(gamma) ^ split_mix(std::bit_cast<std::uint64_t>(contrast)));
+  Found& found = all[mixed % all.size()];
+  if (found.gamma == gamma && found.contrast == contrast) return found.a;
   Amplitudes ratio, a;
   double next = (gamma - harmonics) / (gamma + harmonics + 1);
   for (std::size_t i = harmonics; i-- > 1;) {
@@ -65,7 +85,8 @@ ToldPlace::Amplitudes ToldPlace::of_power(double gamma, double contrast) {
   }
   a[0] = 1;
   for (std::size_t i = 1; i < harmonics; ++i) a[i] = a[i - 1] * ratio[i];
-  return a;
+  found = {gamma, contrast, a};
+  return found.a;
 }
 
 ToldPlace::Amplitudes ToldPlace::amplitudes(const Set& set, const Bend& bend) const {
@@ -99,8 +120,8 @@ std::complex<double> ToldPlace::fitted(const Set& set, const Bend& bend, double 
   const std::complex<double> turn = std::polar(1.0, theta);
   std::complex<double> turned = turn;
   for (std::size_t i = 0; i < harmonics; ++i) {
-    sum += a[i] * (set.along[i] * turned + set.against[i] * std::conj(turned));
-    turned *= turn;
+    sum += a[i] * (product(set.along[i], turned) + product(set.against[i], std::conj(turned)));
+    turned = product(turned, turn);
   }
   return sum;
 }

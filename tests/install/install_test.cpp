@@ -82,6 +82,27 @@ TEST_F(Installed, SchemasAndLicenceAreThere) {
   EXPECT_TRUE(fs::exists(prefix / "share/doc/gonio/LICENSE"));
 }
 
+// base/loaded_library.h: a plan of an arm's way among solids asks one of the modules for distances.
+TEST_F(Installed, WhatProgramsLoadLiesBesideThem) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(GONIO_BUILD "/lib/gonio")) {
+    EXPECT_TRUE(fs::exists(prefix / "lib/gonio" / entry.path().filename())) << entry.path();
+    ++count;
+  }
+  EXPECT_GT(count, 0U);
+  const std::string desk = (*scratch / "desk").string();
+  const std::string plan = "acquire '" + desk + "/lab.json' --log-level warning -o '" + desk +
+                           "/plan.json' --plan board:views=3,tilt=30deg,nearest=25cm,farthest=35cm";
+  const Ended ended =
+      run("mkdir '" + desk + "' && acquire --specimen desk --out '" + desk + "' -o '" + desk + "/lab.json' && " + plan);
+  EXPECT_EQ(ended.status, 0) << ended.text;
+  fs::rename(prefix / "lib/gonio", prefix / "lib/elsewhere");
+  const Ended without = run(plan);
+  fs::rename(prefix / "lib/elsewhere", prefix / "lib/gonio");
+  EXPECT_EQ(without.status, 70) << "the plan asked no module";
+  EXPECT_THAT(without.text, testing::HasSubstr("install gonio anew"));
+}
+
 TEST_F(Installed, OnlyProgramsLieInBin) {
   std::size_t count = 0;
   for (const auto& entry : fs::directory_iterator(prefix / "bin")) {

@@ -81,6 +81,7 @@ double through_lens(double radius, std::size_t picture, const ExposureWorld& wor
   const double n = world.f_numbers[picture], widest = std::ranges::min(world.f_numbers);
   double share = std::pow(widest / n, 2) * (n > widest ? world.stopped_down : 1);
   if (!(world.rim > 0)) return share;
+  const double rim2 = 1 / (world.rim * world.rim);
   int started = 0, passed_rim = 0;
   constexpr int across = 160;
   for (int j = 0; j < across; ++j)
@@ -88,7 +89,8 @@ double through_lens(double radius, std::size_t picture, const ExposureWorld& wor
       const double x = (2 * i + 1.0) / across - 1, y = (2 * j + 1.0) / across - 1;  // over the aperture
       if (x * x + y * y > 1) continue;
       ++started;
-      passed_rim += std::hypot(x / n - world.rim_shift * radius / world.rim, y / n) < 1 / world.rim;
+      const double across_rim = x / n - world.rim_shift * radius / world.rim, along = y / n;
+      passed_rim += across_rim * across_rim + along * along < rim2;  // not hypot, which took a fifth of these tests
     }
   return share * passed_rim / started;
 }
