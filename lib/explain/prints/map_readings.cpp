@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "explain/prints/sight.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::prints {
@@ -81,7 +82,7 @@ void gather(const PrintsInput& input, std::size_t which, Readings& readings) {
 }
 
 void look_up(const Sent& sent, const Field& field, Readings& readings) {
-  const Seen top(field, field.top_m, Vec2{1, 1} * cells_per_pixel, usual_resolution_cells);  // means over pixels
+  const Seen top(field, Vec2{1, 1} * cells_per_pixel, usual_resolution_cells);  // means over pixels
   std::vector<double> bottoms{0};
   for (std::size_t k = 0; k < sent.layers.size(); ++k) bottoms.push_back(bottoms.back() + sent.printer.thickness_m(k));
   std::erase_if(readings.rows, [&](Reading& r) {

@@ -9,6 +9,7 @@
 #include "explain/prints/map_readings.h"
 #include "explain/prints/print_term.h"
 #include "explain/prints/sample.h"
+#include "explain/prints/sight.h"
 #include "inference/explanation.h"
 #include "inference/fit.h"
 #include "manifest/document.h"
@@ -59,22 +60,22 @@ TEST(PrintPixelTilt, IsSharpAtOneEnd) {
 TEST(Seen, IsExactForEvenCellsBetweenKnots) {
   Field field{.width = 6, .height = 4, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .floor_m = {}, .ceiling_m = {}};
   for (int i = 0; i < 24; ++i) field.top_m.push_back(i * i % 7);
-  const Seen means(field, field.top_m, {2, 2}, 0);
+  const Seen means(field, {2, 2}, 0);
   const auto cell = [&](int x, int y) { return field.top_m[static_cast<std::size_t>(y * 6 + x)]; };
   EXPECT_NEAR(means.at(2, 2), (cell(1, 1) + cell(2, 1) + cell(1, 2) + cell(2, 2)) / 4, 1e-12);
   // A square from x = 1.3 to 3.3 holds 0.7 of the cells of column 1, all of 2 and 0.3 of 3.
   double sum = 0;
   for (const int y : {1, 2}) sum += 0.7 * cell(1, y) + cell(2, y) + 0.3 * cell(3, y);
   EXPECT_NEAR(means.at(2.3, 2), sum / 4, 1e-12);
-  const std::vector<double> level(24, 5.0);
-  EXPECT_NEAR(Seen(field, level, {0.7, 0.7}, 1.3).at(3.2, 1.7), 5, 1e-12);
+  field.top_m.assign(24, 5.0);
+  EXPECT_NEAR(Seen(field, {0.7, 0.7}, 1.3).at(3.2, 1.7), 5, 1e-12);
 }
 
 // A step under a Gaussian is the normal law.
 TEST(Seen, BlursByItsResolution) {
   Field field{.width = 40, .height = 3, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .floor_m = {}, .ceiling_m = {}};
   for (int i = 0; i < 120; ++i) field.top_m.push_back(i % 40 < 20 ? 0 : 1);
-  const Seen seen(field, field.top_m, {0.01, 0.01}, 2);
+  const Seen seen(field, {0.01, 0.01}, 2);
   for (const double x : {17.0, 19.5, 20.0, 22.25})
     EXPECT_NEAR(seen.at(x, 1.5), 0.5 * std::erfc((20 - x) / (2 * std::sqrt(2.0))), 2e-3) << x;
 }
