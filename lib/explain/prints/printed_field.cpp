@@ -1,6 +1,7 @@
 // See printed_field.h.
 #include "explain/prints/printed_field.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "print/cure.h"
@@ -23,10 +24,9 @@ Field grown(const Sent& sent, const Setting& setting, const Lights& lights) {
   for (std::size_t k = lights.size(); k-- > 0;) cure.add(lights[k], bottom[k], bottom[k + 1]);
   const print::CuredSurface& surface = cure.surface();
   const auto finite = [](float v) { return std::isfinite(v) ? static_cast<double>(v) : 0.0; };
-  for (std::size_t i = 0; i < surface.top_m.size(); ++i) {
-    field.top_m.push_back(finite(surface.top_m[i]));
-    field.floor_m.push_back(finite(surface.floor_m[i])), field.ceiling_m.push_back(finite(surface.ceiling_m[i]));
-  }
+  field.top_m.resize(surface.top_m.size()), field.ceiling_m.resize(surface.top_m.size());
+  std::ranges::transform(surface.top_m, field.top_m.begin(), finite);
+  std::ranges::transform(surface.ceiling_m, field.ceiling_m.begin(), finite);
   return field;
 }
 

@@ -13,10 +13,9 @@ namespace gonio::explain::prints {
 
 struct Field {  // of cells, row by row from the smallest y
   int width = 0, height = 0;
-  Vec2 corner_m{}, cell_m{};    // outer corner
-  std::vector<double> top_m;    // 0 where nothing is solid
-  std::vector<double> floor_m;  // of the layer that is seen
-  std::vector<double> ceiling_m;
+  Vec2 corner_m{}, cell_m{};      // outer corner
+  std::vector<double> top_m;      // 0 where nothing is solid
+  std::vector<double> ceiling_m;  // of the layer that is seen
 };
 // What grows where the membrane leaves room, of a setting that displaces layers by whole cells.
 Field grown(const Sent& sent, const Setting& setting, const Lights& lights);

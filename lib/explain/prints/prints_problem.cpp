@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "explain/prints/ground.h"
 #include "explain/prints/map_readings.h"
 #include "explain/prints/print_memo.h"
 #include "explain/prints/print_term.h"
@@ -25,12 +27,15 @@ constexpr double um = 1e6, infinity = std::numeric_limits<double>::infinity();
 constexpr double place_sigma_px = 0.3, most_place_px = 3;
 constexpr double usual_resolution_px = 0.2, resolution_sigma_px = 0.15, coarsest_px = 1;
 constexpr double tilt_sigma = 0.1;
+constexpr double level_of_ground = 1e-3, lengths_of_a_block = 3;
 constexpr std::size_t kept_predictions = 64, kept_slopes = 256, kept_map_slopes = 16;
 
 class PrintsProblem final : public Problem {
  public:
   explicit PrintsProblem(PrintsInput input)
       : input_(std::move(input)), readings_(readings_of(input_)), simulation_(input_.sent) {
+    layer_um_ = um * input_.sent.printer.layer_m;
+    listen();
     map_parameters();
     physics_ = parameters_.size();
     for (const Term* term : all_terms()) enter(*term);
@@ -64,17 +69,31 @@ class PrintsProblem final : public Problem {
   }
 
   std::string domain() const override { return "prints"; }
-  std::string unit() const override { return "um"; }
-  std::string score_name() const override { return "RMS error of heights"; }
+  std::string unit() const override { return "1"; }
+  std::string score_name() const override { return "RMS error of heights over a layer's thickness"; }
   std::string group_noun() const override { return "patch"; }
-  Importance importance() const override { return Importance::share_of_residual; }
+  // What matters goes with the layers, which a print cannot be finer than: a share of what another effect leaves would
+  // name ever smaller ones beside it.
+  Importance importance() const override { return Importance::share_of_signal; }
   double fit_tolerance() const override { return 1e-5; }
   // A grey value that just cures, or does not, moves the surface by a whole layer.
   bool sets_outliers_aside() const override { return true; }
 
   std::string remarks(const Explanation&) const override { return prints_remarks(input_, readings_); }
+  std::vector<std::size_t> tested_apart() const override {
+    std::vector<std::size_t> apart;
+    for (std::size_t c = 0; c < candidates_.size(); ++c)
+      if (use_of(candidates_[c].parameters.front()).term->random) apart.push_back(c);
+    return apart;
+  }
+  void conclude(Explanation& e) const override {
+    if (!is_heard()) return;
+    for (const std::size_t c : tested_apart()) conclude_ground(*this, *ground_, layer_um_, c, e);
+  }
   void apply(const Explanation& e, manifest::Document& document) const override {
     for (const PrintUse& use : uses_) upgrade_print(input_, use, e, document);
+    for (const std::size_t c : tested_apart())
+      if (std::ranges::find(e.named, c) != e.named.end()) write_ground(input_, *ground_, document);
   }
   Illustration illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const override {
     return illustrate_prints(input_, readings_, e);
@@ -115,8 +134,9 @@ class PrintsProblem final : public Problem {
       see(m, setting, values, mean_m, nullptr);
       for (const double z : mean_m) {
         const Vec2 at = readings_.rows[prediction.size()].at_m - input_.sent.centre_m;
-        prediction.push_back(um * equation::print_shrinkage(z, setting.shrinkage.z) + values[own + Of::height] +
-                             um * (values[own + Of::tilt_x] * at.x + values[own + Of::tilt_y] * at.y));
+        prediction.push_back((um * equation::print_shrinkage(z, setting.shrinkage.z) + values[own + Of::height] +
+                              um * (values[own + Of::tilt_x] * at.x + values[own + Of::tilt_y] * at.y)) /
+                             layer_um_);
       }
     }
     return prediction;
@@ -132,8 +152,8 @@ class PrintsProblem final : public Problem {
       see(m, setting, values, mean_m, &slopes);
       for (const Sight::Slopes& s : slopes) {
         const Vec2 at = readings_.rows[all.size()].at_m - input_.sent.centre_m;
-        const double z = um * equation::print_shrinkage(1, setting.shrinkage.z);
-        all.push_back({1, um * at.x, um * at.y, z * s.shift_x * pixel.x, z * s.shift_y * pixel.y,
+        const double one = um / layer_um_, z = one * equation::print_shrinkage(1, setting.shrinkage.z);
+        all.push_back({1 / layer_um_, one * at.x, one * at.y, z * s.shift_x * pixel.x, z * s.shift_y * pixel.y,
                        z * s.resolution * pixel.x});
       }
     }
@@ -172,8 +192,7 @@ class PrintsProblem final : public Problem {
       std::vector<double> above;
       for (const Reading& r : readings_.rows)
         if (r.map == m) above.push_back(r.z_um - r.height_um);
-      const double layer_um = um * input_.sent.printer.layer_m;
-      free("height_um", "um", above.empty() ? 0 : stats::median(above), -infinity, infinity, 0.1 * layer_um, {});
+      free("height_um", "um", above.empty() ? 0 : stats::median(above), -infinity, infinity, 0.1 * layer_um_, {});
       free("tilt_x", "1", 0, -infinity, infinity, 1e-3, tilt_sigma);
       free("tilt_y", "1", 0, -infinity, infinity, 1e-3, tilt_sigma);
       free("x_px", "px", 0, -most_place_px, most_place_px, 0.1, place_sigma_px);
@@ -241,12 +260,20 @@ class PrintsProblem final : public Problem {
         o.group.push_back(input_.maps[r.map].relief + " patch " + std::to_string(r.patch + 1));
       }
       if (last != nullptr && (last->map != r.map || last->patch != r.patch || last->tile != r.tile)) ++block;
-      o.value.push_back(r.z_um), o.sigma.push_back(r.sigma_um), o.norm.push_back(1), o.block.push_back(block);
+      o.value.push_back(r.z_um / layer_um_), o.sigma.push_back(r.sigma_um / layer_um_);
+      o.norm.push_back(1), o.block.push_back(block);
     }
     o.first.push_back(readings_.rows.size());
     o.conditions = print_conditions(input_, readings_);
   }
 
+  // What the printer adds at random is noise to all else that is asked.
+  void listen() {
+    ground_ = ground_of(input_.sent, readings_, usual_resolution_px);
+    if (is_heard())
+      add_noise(ground_->seen_rms_um, static_cast<int>(std::ceil(lengths_of_a_block * ground_->length_px)), readings_);
+  }
+  bool is_heard() const { return ground_ && ground_->p < level_of_ground; }
   void look() {
     std::size_t first = 0;
     for (std::size_t m = 0; m < input_.maps.size(); ++m) {
@@ -264,6 +291,8 @@ class PrintsProblem final : public Problem {
 
   PrintsInput input_;
   Readings readings_;
+  double layer_um_ = 1;
+  std::optional<Ground> ground_;
   std::vector<PrintUse> uses_;
   std::size_t physics_ = 0;  // the first parameter that is no map's
   std::vector<Sight> sights_;

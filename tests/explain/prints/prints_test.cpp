@@ -58,7 +58,7 @@ TEST(PrintPixelTilt, IsSharpAtOneEnd) {
 }
 
 TEST(Seen, IsExactForEvenCellsBetweenKnots) {
-  Field field{.width = 6, .height = 4, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .floor_m = {}, .ceiling_m = {}};
+  Field field{.width = 6, .height = 4, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .ceiling_m = {}};
   for (int i = 0; i < 24; ++i) field.top_m.push_back(i * i % 7);
   const Seen means(field, {2, 2}, 0);
   const auto cell = [&](int x, int y) { return field.top_m[static_cast<std::size_t>(y * 6 + x)]; };
@@ -73,7 +73,7 @@ TEST(Seen, IsExactForEvenCellsBetweenKnots) {
 
 // A step under a Gaussian is the normal law.
 TEST(Seen, BlursByItsResolution) {
-  Field field{.width = 40, .height = 3, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .floor_m = {}, .ceiling_m = {}};
+  Field field{.width = 40, .height = 3, .corner_m = {}, .cell_m = {1, 1}, .top_m = {}, .ceiling_m = {}};
   for (int i = 0; i < 120; ++i) field.top_m.push_back(i % 40 < 20 ? 0 : 1);
   const Seen seen(field, {0.01, 0.01}, 2);
   for (const double x : {17.0, 19.5, 20.0, 22.25})
