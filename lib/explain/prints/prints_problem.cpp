@@ -15,6 +15,7 @@
 #include "explain/prints/sight.h"
 #include "explain/prints/simulation.h"
 #include "inference/explanation.h"
+#include "print/mechanisms/print_growth.h"
 #include "print/mechanisms/print_shrinkage.h"
 #include "stats/intervals.h"
 
@@ -26,7 +27,7 @@ using namespace prints;
 constexpr double um = 1e6, infinity = std::numeric_limits<double>::infinity();
 constexpr double place_sigma_px = 0.3, most_place_px = 3;
 constexpr double usual_resolution_px = 0.2, resolution_sigma_px = 0.15, coarsest_px = 1;
-constexpr double tilt_sigma = 0.1;
+constexpr double tilt_sigma = 0.1, white_sigma = 0.003;
 constexpr double level_of_ground = 1e-3, lengths_of_a_block = 3;
 constexpr std::size_t kept_predictions = 64, kept_slopes = 256, kept_map_slopes = 16;
 
@@ -37,6 +38,7 @@ class PrintsProblem final : public Problem {
     layer_um_ = um * input_.sent.printer.layer_m;
     listen();
     map_parameters();
+    law_parameters();
     physics_ = parameters_.size();
     for (const Term* term : all_terms()) enter(*term);
     observe();
@@ -55,7 +57,7 @@ class PrintsProblem final : public Problem {
       const std::size_t column = columns[k];
       const std::span<double> to = derivatives.subspan(k * rows, rows);
       std::vector<double> key(values.begin(), values.end());
-      if (column < physics_) {
+      if (column < input_.maps.size() * numbers_of_a_map) {
         const std::size_t map = column / numbers_of_a_map;
         const auto all = map_slopes_.at(key, [&] { return map_slopes(values); });
         for (std::size_t i = 0; i < rows; ++i)
@@ -111,6 +113,11 @@ class PrintsProblem final : public Problem {
       const std::span<const double> p = values.subspan(use.first, use.neutral.size());
       if (!std::ranges::equal(p, use.neutral)) use.term->set(setting, input_.sent, use.form, p);
     }
+    if (white_ && values[*white_] != 0) {
+      equation::PrintGrowth told = equation::print_growth_of(*setting.printer.growth.law());
+      told.white_m *= 1 + values[*white_];
+      setting.printer.growth = print::Growth(equation::print_growth(told));
+    }
     return setting;
   }
   // Of the map's readings, which stand one after the other.
@@ -162,7 +169,7 @@ class PrintsProblem final : public Problem {
   // By a number of the physics: differences of surfaces.
   std::vector<double> slope(std::span<const double> values, std::size_t column) const {
     const Parameter& p = parameters_[column];
-    const double centre = values[column], step = use_of(column).term->step * p.size;
+    const double centre = values[column], step = (column < physics_ ? 1 : use_of(column).term->step) * p.size;
     const double upper = std::min(centre + step, std::max(p.upper, centre)),
                  lower = std::max(centre - step, std::min(p.lower, centre));
     std::vector<double> moved(values.begin(), values.end());
@@ -199,6 +206,15 @@ class PrintsProblem final : public Problem {
       free("y_px", "px", 0, -most_place_px, most_place_px, 0.1, place_sigma_px);
       free("resolution_px", "px", usual_resolution_px, 0, coarsest_px, 0.1, resolution_sigma_px);
     }
+  }
+
+  // A law that is stated was fitted to something: white's height is free by what such fits err. A table is what was
+  // measured itself.
+  void law_parameters() {
+    const print::Growth& growth = input_.sent.printer.growth;
+    if (!growth.law() || growth.table()) return;
+    white_ = add({"prints/" + input_.name + "/growth/white", "1", 0, 0, -0.1, 0.1, white_sigma, white_sigma, {}});
+    base_.push_back(*white_);
   }
 
   void enter(const Term& term) {
@@ -293,6 +309,7 @@ class PrintsProblem final : public Problem {
   Readings readings_;
   double layer_um_ = 1;
   std::optional<Ground> ground_;
+  std::optional<std::size_t> white_;  // place of its parameter
   std::vector<PrintUse> uses_;
   std::size_t physics_ = 0;  // the first parameter that is no map's
   std::vector<Sight> sights_;

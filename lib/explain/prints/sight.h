@@ -1,6 +1,6 @@
 // Simulated heights as an instrument sees them: means over the square that a point of a map stands for, blurred by the
-// instrument's resolution, a Gaussian. Lengths in cells, places from the field's outer corner; between knots, a quarter
-// of a cell apart, weights of the cells are linear.
+// instrument's resolution, a Gaussian. Lengths in cells, places from the field's outer corner; between knots, a twelfth
+// of a cell apart, weights of the cells are linear: with a quarter, walls would stand wrong by 0.004 pixels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace gonio::explain::prints {
 
-inline constexpr int knots_per_cell = 4;  // even: maps with a point for each cell are exact
+inline constexpr int knots_per_cell = 12;  // maps with points every half or third of a pixel are exact
 
 // Weights of the cells about each of the knots of a cell: those from `-reach` to `reach` beside the one that it is in.
 struct Weights {
