@@ -4,7 +4,8 @@
 //   prove-sealed judge FOLDER quick|full [DOMAIN...]   table on stdout; FOLDER.html, FOLDER.truth.json beside it;
 //                                                      FOLDER/list.txt: what explain --list prints, if it is there
 // Between the two no truth exists on any disk: judge computes it again from the same seeds and holds it against the
-// seal. SEALED_SEEDS in the environment, a word, draws other seeds for every case: some to develop on, others to report.
+// seal. SEALED_SEEDS in the environment, a word, draws other seeds for every case: some to develop on, others to
+// report.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>

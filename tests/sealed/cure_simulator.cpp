@@ -20,9 +20,9 @@ double ramp(double u, double s) {
   return u * 0.5 * std::erfc(-z / std::sqrt(2.0)) + s * std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
 }
 
-// Scattered from every cell, whose light is even, with the spread that it has there, along one axis: the share of a cell
-// j away is the mean over it of a cell's light under a Gaussian. From the middles of cells alone, a third of a pixel
-// apart, light would be spread by 0.1 pixels less than it is said to be, in the mean square.
+// Scattered from every cell, whose light is even, with the spread that it has there, along one axis: the share of a
+// cell j away is the mean over it of a cell's light under a Gaussian. From the middles of cells alone, a third of a
+// pixel apart, light would be spread by 0.1 pixels less than it is said to be, in the mean square.
 void spread_along(std::vector<double>& field, int side, bool along_x, const std::vector<double>& sigma) {
   std::map<double, std::vector<double>> shares;  // of the cells from 0 on, by the spread; the other side is alike
   for (const double s : sigma) {

@@ -86,10 +86,12 @@ class Prints final : public World {
           const double sign = far_side_ % 2 == 0 ? 1 : -1;
           return std::vector<TrueValue>{{"print.pixel-tilt", names[far_side_], sign * s[0] / side_px}};
         };
-    add({"ground", "print.ground-noise", stage, {}, 0.03, 0.1}).only_for("two prints").values = [this](const Numbers& s) {
-      return std::vector<TrueValue>{{"print.ground-noise", "rms_m", s[0] * layer_m_},
-                                    {"print.ground-noise", "length_m", std::sqrt(2.0) * ground_px_ * pixel_m_, true, false}};
-    };
+    add({"ground", "print.ground-noise", stage, {}, 0.03, 0.1}).only_for("two prints").values =
+        [this](const Numbers& s) {
+          return std::vector<TrueValue>{
+              {"print.ground-noise", "rms_m", s[0] * layer_m_},
+              {"print.ground-noise", "length_m", std::sqrt(2.0) * ground_px_ * pixel_m_, true, false}};
+        };
     add({"rough", "", stage, {}, 0.03, 0.1});
     add({"oxygen from the sides", "", stage, {}, 0.15, 0.5});
     add({"scratched membrane", "", stage, {}, 0.06, 0.25});
@@ -207,7 +209,8 @@ class Prints final : public World {
     print["measured"] = Value::array();
     for (std::size_t p = 0; p < prints_; ++p) {
       Value map = Value::object({{"relief", p == 0 ? "sample" : "second"}});
-      map["at_m"] = Value(std::vector<double>{first + misplaced_px_[0] * pixel_m_, -first + misplaced_px_[1] * pixel_m_});
+      map["at_m"] =
+          Value(std::vector<double>{first + misplaced_px_[0] * pixel_m_, -first + misplaced_px_[1] * pixel_m_});
       print["measured"].as_array().push_back(map);
     }
     m["prints"]["p"] = print;

@@ -17,7 +17,7 @@ namespace gonio::explain::prints {
 namespace {
 
 constexpr int tile_px = 8, margin_px = 3, most_tiles = 64, fewest_tiles = 4, fewest_pixels = 24;
-constexpr double level = 0.02;  // of a layer, from pixel to pixel
+constexpr double gentle = 0.25;  // of a layer, from pixel to pixel
 constexpr double shortest_px = 0.7, longest_px = 6;
 constexpr int lengths = 9;
 
@@ -27,8 +27,8 @@ struct Pixel {
 using Tile = std::vector<Pixel>;
 using At = std::tuple<int, int>;  // x, y
 
-bool is_level(const Reading& r, double layer_um) {
-  return std::max({std::abs(r.slope_x), std::abs(r.slope_y), std::abs(r.bend)}) < level * layer_um;
+bool is_gentle(const Reading& r, double layer_um) {
+  return std::max({std::abs(r.slope_x), std::abs(r.slope_y), std::abs(r.bend)}) < gentle * layer_um;
 }
 
 bool same_history(const Sent& sent, std::size_t a, std::size_t b) {
@@ -53,18 +53,38 @@ void add(std::map<std::tuple<std::size_t, int, int>, Tile>& tiles, std::size_t m
       {static_cast<double>(r.x_px), static_cast<double>(r.y_px), z_um});
 }
 
-// Differences of two maps after each other, over the root of two: as large as what either map has of its own.
+using Pair = std::pair<const Reading*, const Reading*>;
+
+// Differences of heights, less what another plane and place of either map make of the simulated surface.
+Eigen::VectorXd differences(const std::vector<Pair>& pairs) {
+  const auto n = static_cast<Eigen::Index>(pairs.size());
+  Eigen::MatrixXd columns(n, 5);
+  Eigen::VectorXd z(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& [a, b] = pairs[static_cast<std::size_t>(i)];
+    columns.row(i) << 1, 1e-2 * a->x_px, 1e-2 * a->y_px, a->slope_x, a->slope_y;
+    z[i] = a->z_um - b->z_um;
+  }
+  const Eigen::MatrixXd normal = columns.transpose() * columns;
+  return z - columns * linear::Ldlt(normal).solve(Eigen::VectorXd(columns.transpose() * z));
+}
+
+// Of two maps after each other, over the root of two: as large as what either map has of its own.
 std::vector<Tile> between_maps(const Readings& readings, double layer_um) {
   std::vector<std::map<At, const Reading*>> maps;
   for (const Reading& r : readings.rows) {
     if (r.map >= maps.size()) maps.resize(r.map + 1);
-    if (is_level(r, layer_um)) maps[r.map][{r.x_px, r.y_px}] = &r;
+    if (is_gentle(r, layer_um)) maps[r.map][{r.x_px, r.y_px}] = &r;
   }
   std::map<std::tuple<std::size_t, int, int>, Tile> tiles;
-  for (std::size_t m = 0; m + 1 < maps.size(); m += 2)
+  for (std::size_t m = 0; m + 1 < maps.size(); m += 2) {
+    std::vector<Pair> pairs;
     for (const auto& [at, r] : maps[m])
-      if (const auto other = maps[m + 1].find(at); other != maps[m + 1].end())
-        add(tiles, m, *r, (r->z_um - other->second->z_um) / std::sqrt(2.0));
+      if (const auto other = maps[m + 1].find(at); other != maps[m + 1].end()) pairs.emplace_back(r, other->second);
+    if (pairs.size() < fewest_tiles * fewest_pixels) continue;
+    const Eigen::VectorXd z_um = differences(pairs) / std::sqrt(2.0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) add(tiles, m, *pairs[i].first, z_um[static_cast<Eigen::Index>(i)]);
+  }
   std::vector<Tile> result;
   for (auto& [at, tile] : tiles) result.push_back(std::move(tile));
   return result;
@@ -209,7 +229,8 @@ std::optional<Ground> ground_of(const Sent& sent, const Readings& readings, doub
   Best best;
   double place = 0;
   for (int k = 0; k < lengths; ++k)
-    if (const Best b = best_of(spectrum_of(tiles, length_of(k)), length_of(k)); b.twice > best.twice) best = b, place = k;
+    if (const Best b = best_of(spectrum_of(tiles, length_of(k)), length_of(k)); b.twice > best.twice)
+      best = b, place = k;
   for (double step = 0.5; step > 0.02; step /= 2)  // between the lengths
     for (const double beside : {place - step, place + step}) {
       if (beside < 0 || beside > lengths - 1) continue;

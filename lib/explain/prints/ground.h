@@ -2,8 +2,8 @@
 // asks for, alike over some pixels, and others in every print.
 //
 // Where maps show the same pixels twice, differences between them say it: whatever is the same in every print is not in
-// them. Otherwise pixels do, about which all layers are even for three pixels. Tiles of 8 x 8 such pixels, each freed of
-// a plane, are a Gaussian process with covariance
+// them. Otherwise pixels do, about which all layers are even for three pixels. Tiles of 8 x 8 such pixels, each freed
+// of a plane, are a Gaussian process with covariance
 //   noise^2 (of single pixels) + rms^2 exp(-distance^2 / (2 length^2))
 // of which the restricted likelihood (Patterson & Thompson, Biometrika 58, 1971) is largest.
 #pragma once

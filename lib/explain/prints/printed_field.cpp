@@ -4,29 +4,82 @@
 #include <algorithm>
 #include <cmath>
 
-#include "print/cure.h"
 #include "print/mechanisms/print_membrane.h"
+#include "print/mechanisms/print_overcure.h"
 
 namespace gonio::explain::prints {
+
+namespace {
+
+// What a difference on either side agrees about: nothing at the rim of an even picture, which is sharp.
+double agreed(double before, double after) {
+  return before * after > 0 ? std::min(std::abs(before), std::abs(after)) : 0;
+}
+
+// From the last layer down, as print/cure.h has it, but cell by cell: light that crosses the threshold within a cell
+// cures a part of it, and what is beside it is seen through. So surfaces change evenly with what moves light; by whole
+// cells a fit would not see walls move, nor how well it knows them.
+class Growing {
+ public:
+  Growing(const print::Printer& printer, Field& field)
+      : growth_(printer.growth),
+        overcure_m_(printer.overcure_m.value_or(0)),
+        threshold_(printer.growth.threshold()),
+        field_(field),
+        total_(field.top_m.size(), 0.0),
+        seen_(field.top_m.size(), 1.0) {}
+  void add(const std::vector<float>& light, double bottom_m, double top_m) {
+    const double kept = above_m_ > 0 ? equation::print_overcure(above_m_, overcure_m_) : 0, layer_m = top_m - bottom_m;
+    above_m_ = layer_m;
+    for (std::size_t i = 0; i < total_.size(); ++i) total_[i] = static_cast<double>(light[i]) + kept * total_[i];
+    const bool sharp = growth_.proportional() || growth_.height_m(0, layer_m) > 0;
+    for (int y = 0; y < field_.height; ++y)
+      for (int x = 0; x < field_.width; ++x) {
+        const std::size_t i =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(field_.width) + static_cast<std::size_t>(x);
+        // Light that only went through later layers cures beneath them: what is below is covered.
+        if (seen_[i] == 0) continue;
+        const double width = sharp ? 0 : varies(x, y, i);
+        const double above = total_[i] - threshold_, part = sharp || above > width / 2 ? 1
+                                                            : width > 0 ? std::max(0.0, above / width + 0.5)
+                                                                        : 0;
+        if (part == 0) continue;
+        const double mean = part < 1 ? threshold_ + part * width / 2 : total_[i];
+        const double height_m = std::min(growth_.height_m(mean, layer_m), layer_m);
+        if (!(height_m > 0)) continue;
+        field_.top_m[i] += seen_[i] * part * (bottom_m + height_m);
+        if (seen_[i] > 0.5 && seen_[i] * (1 - part) <= 0.5) field_.ceiling_m[i] = top_m;
+        seen_[i] *= 1 - part;
+      }
+  }
+
+ private:
+  double varies(int x, int y, std::size_t i) const {  // light across the cell
+    const auto width = static_cast<std::size_t>(field_.width);
+    double sum = 0;
+    if (x > 0 && x + 1 < field_.width) sum += agreed(total_[i] - total_[i - 1], total_[i + 1] - total_[i]);
+    if (y > 0 && y + 1 < field_.height) sum += agreed(total_[i] - total_[i - width], total_[i + width] - total_[i]);
+    return sum;
+  }
+  const print::Growth& growth_;
+  double overcure_m_, threshold_, above_m_ = 0;
+  Field& field_;
+  std::vector<double> total_, seen_;
+};
+
+}  // namespace
 
 Field grown(const Sent& sent, const Setting& setting, const Lights& lights) {
   Field field;
   field.width = sent.wide() * cells_per_pixel, field.height = sent.high() * cells_per_pixel;
   field.corner_m = sent.corner_m;
   field.cell_m = sent.cell_m();
-  print::Printer fine = setting.printer;
-  fine.pixel_m = field.cell_m;
-  fine.width_px *= cells_per_pixel, fine.height_px *= cells_per_pixel;
-  fine.bleed = {};  // which is in the light
-  print::Cure cure(fine, {0, 0, field.width, field.height});
+  const auto cells = static_cast<std::size_t>(field.width) * static_cast<std::size_t>(field.height);
+  field.top_m.assign(cells, 0.0), field.ceiling_m.assign(cells, 0.0);
+  Growing growing(setting.printer, field);
   std::vector<double> bottom{0};
-  for (std::size_t k = 0; k < lights.size(); ++k) bottom.push_back(bottom.back() + fine.thickness_m(k));
-  for (std::size_t k = lights.size(); k-- > 0;) cure.add(lights[k], bottom[k], bottom[k + 1]);
-  const print::CuredSurface& surface = cure.surface();
-  const auto finite = [](float v) { return std::isfinite(v) ? static_cast<double>(v) : 0.0; };
-  field.top_m.resize(surface.top_m.size()), field.ceiling_m.resize(surface.top_m.size());
-  std::ranges::transform(surface.top_m, field.top_m.begin(), finite);
-  std::ranges::transform(surface.ceiling_m, field.ceiling_m.begin(), finite);
+  for (std::size_t k = 0; k < lights.size(); ++k) bottom.push_back(bottom.back() + setting.printer.thickness_m(k));
+  for (std::size_t k = lights.size(); k-- > 0;) growing.add(lights[k], bottom[k], bottom[k + 1]);
   return field;
 }
 
@@ -56,7 +109,7 @@ std::shared_ptr<const Field> printed_field(const Sent& sent, const Setting& sett
       mixed->top_m.assign(one->top_m.size(), 0.0);
     }
     for (std::size_t i = 0; i < one->top_m.size(); ++i)
-      mixed->top_m[i] += weight * (setting.cut_m > 0
+      mixed->top_m[i] += weight * (setting.cut_m > 0 && one->ceiling_m[i] > 0
                                        ? equation::print_membrane(one->top_m[i], one->ceiling_m[i], setting.cut_m)
                                        : one->top_m[i]);
   }
@@ -65,9 +118,8 @@ std::shared_ptr<const Field> printed_field(const Sent& sent, const Setting& sett
 
 Field printed_field(const Sent& sent, const Setting& setting) {
   return *printed_field(sent, setting, [&sent](const Setting& own) {
-    Lights lights = lights_of(sent, own, [&sent](double tail_m) {
-      return std::make_shared<const Lights>(tails_of(sent, tail_m));
-    });
+    Lights lights =
+        lights_of(sent, own, [&sent](double tail_m) { return std::make_shared<const Lights>(tails_of(sent, tail_m)); });
     if (own.shifted_from > 0) {
       const auto [x, y] = shift_cells(sent, own);
       lights = moved(lights, sent, own.shifted_from, x, y);

@@ -1,5 +1,6 @@
 // A printed surface, simulated from what was sent: light of the layers (printed_light.h), added up over layers and
-// cured (print/cure.h); tops cut at the membrane. Cells of half a pixel.
+// cured as in print/cure.h, with the parts of cells that light reaches; tops cut at the membrane. Cells of half a
+// pixel.
 //
 // Frame of the platform (manifest/sections/print.h), metres. Heights over the platform.
 #pragma once

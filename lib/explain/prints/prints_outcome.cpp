@@ -82,6 +82,20 @@ void upgrade_print(const PrintsInput& input, const PrintUse& use, const Explanat
   }
 }
 
+namespace {
+
+constexpr double no_more = 1.25;  // times the square that ground and noise make
+
+// Neighbours that the ground moves together look like structure to tests that deal in blocks; their size does not.
+bool is_all_there_is(const Problem& problem, const Explanation& e) {
+  const inference::Observations& o = problem.observations();
+  double squares = 0;
+  for (std::size_t i = 0; i < o.rows(); ++i) squares += std::pow(e.residual_after[i] / o.sigma[i], 2);
+  return squares < no_more * static_cast<double>(o.rows());
+}
+
+}  // namespace
+
 void conclude_ground(const Problem& problem, const prints::Ground& ground, double layer_um, std::size_t candidate,
                      Explanation& e) {
   const inference::Candidate& c = problem.candidates()[candidate];
@@ -89,13 +103,18 @@ void conclude_ground(const Problem& problem, const prints::Ground& ground, doubl
   inference::Apart apart{.candidate = candidate, .estimates = {}, .p = ground.p, .refused = {}};
   const auto estimate = [&](std::size_t which, double value, double log_sigma) {
     const double factor = std::exp(normal_95 * log_sigma);
-    apart.estimates.push_back({c.parameters.at(which), value, value * log_sigma, value / factor, value * factor, false});
+    apart.estimates.push_back(
+        {c.parameters.at(which), value, value * log_sigma, value / factor, value * factor, false});
   };
   estimate(0, 1e-6 * ground.rms_um, ground.log_rms_sigma);
   estimate(1, pixel_m * ground.length_px, ground.log_length_sigma);
   apart.effect = ground.rms_um / layer_um;
   apart.with = apart.without = e.held_out_after;
   if (ground.length_px < 1) apart.refused = "is alike over less than a pixel, as the instrument's noise may be";
+  if (e.verdict == inference::Verdict::unknown && apart.refused.empty() && is_all_there_is(problem, e)) {
+    e.verdict = e.named.empty() ? inference::Verdict::null : inference::Verdict::named;
+    e.outside.reset();
+  }
   inference::join(problem, apart, e);
 }
 

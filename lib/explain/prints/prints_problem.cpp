@@ -27,8 +27,8 @@ using namespace prints;
 constexpr double um = 1e6, infinity = std::numeric_limits<double>::infinity();
 constexpr double place_sigma_px = 0.3, most_place_px = 3;
 constexpr double usual_resolution_px = 0.2, resolution_sigma_px = 0.15, coarsest_px = 1;
-constexpr double tilt_sigma = 0.1, white_sigma = 0.003;
-constexpr double level_of_ground = 1e-3, lengths_of_a_block = 3;
+constexpr double tilt_sigma = 0.1, white_sigma = 0.003, usual_spread_px = 0.05, most_spread_px = 0.25;
+constexpr double level_of_ground = 1e-3, lengths_of_a_block = 4;
 constexpr std::size_t kept_predictions = 64, kept_slopes = 256, kept_map_slopes = 16;
 
 class PrintsProblem final : public Problem {
@@ -38,7 +38,7 @@ class PrintsProblem final : public Problem {
     layer_um_ = um * input_.sent.printer.layer_m;
     listen();
     map_parameters();
-    law_parameters();
+    print_parameters();
     physics_ = parameters_.size();
     for (const Term* term : all_terms()) enter(*term);
     observe();
@@ -113,6 +113,8 @@ class PrintsProblem final : public Problem {
       const std::span<const double> p = values.subspan(use.first, use.neutral.size());
       if (!std::ranges::equal(p, use.neutral)) use.term->set(setting, input_.sent, use.form, p);
     }
+    const double spread_m = values[spread_] * input_.sent.printer.pixel_m.x;
+    setting.printer.bleed.sigma_m = std::hypot(setting.printer.bleed.sigma_m, spread_m);
     if (white_ && values[*white_] != 0) {
       equation::PrintGrowth told = equation::print_growth_of(*setting.printer.growth.law());
       told.white_m *= 1 + values[*white_];
@@ -208,12 +210,24 @@ class PrintsProblem final : public Problem {
     }
   }
 
-  // A law that is stated was fitted to something: white's height is free by what such fits err. A table is what was
-  // measured itself.
-  void law_parameters() {
+  // What every resin does a little: radicals spread before they act, so that walls stand beside the pixels' rims, this
+  // way and that. And a law that is stated was fitted to something: white's height is free by what such fits err; a
+  // table is what was measured itself.
+  void print_parameters() {
+    const std::string prefix = "prints/" + input_.name + "/";
+    spread_ = add({prefix + "bleed/spread_px",
+                   "px",
+                   usual_spread_px,
+                   usual_spread_px,
+                   0,
+                   most_spread_px,
+                   0.2 * usual_spread_px,
+                   usual_spread_px,
+                   {}});
+    base_.push_back(spread_);
     const print::Growth& growth = input_.sent.printer.growth;
     if (!growth.law() || growth.table()) return;
-    white_ = add({"prints/" + input_.name + "/growth/white", "1", 0, 0, -0.1, 0.1, white_sigma, white_sigma, {}});
+    white_ = add({prefix + "growth/white", "1", 0, 0, -0.1, 0.1, white_sigma, white_sigma, {}});
     base_.push_back(*white_);
   }
 
@@ -309,7 +323,8 @@ class PrintsProblem final : public Problem {
   Readings readings_;
   double layer_um_ = 1;
   std::optional<Ground> ground_;
-  std::optional<std::size_t> white_;  // place of its parameter
+  std::size_t spread_ = 0;  // places of their parameters
+  std::optional<std::size_t> white_;
   std::vector<PrintUse> uses_;
   std::size_t physics_ = 0;  // the first parameter that is no map's
   std::vector<Sight> sights_;

@@ -5,9 +5,9 @@
 // sixteen patches of each map; blocks of 4 x 4 pixels. What the printer adds at random (explain/prints/ground.h) is
 // asked before, and where it is there it is noise of the readings, and blocks are larger.
 //
-// Base model: what "prints" states of growth (white's height to 0.3 %), bleed and overcure (print/cure.h); for each map a
-// plane, where it lies (by some tenths of a pixel) and the instrument's lateral resolution. Hypotheses: print.* (explain/prints/terms), one
-// file each.
+// Base model: what "prints" states of growth (white's height to 0.3 %), bleed (and a twentieth of a pixel by which
+// resins spread light themselves) and overcure (print/cure.h); for each map a plane, where it lies (by some tenths of a
+// pixel) and the instrument's lateral resolution. Hypotheses: print.* (explain/prints/terms), one file each.
 //
 // Frame of the platform (manifest/sections/print.h), metres.
 #pragma once

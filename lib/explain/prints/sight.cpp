@@ -58,13 +58,16 @@ struct Taps {
   void trim() {
     constexpr double least = 1e-9;
     const auto counts = [&](std::size_t k) {
-      return std::abs(weight[k]) > least || (!by_place.empty() && std::abs(by_place[k]) + std::abs(by_resolution[k]) > least);
+      return std::abs(weight[k]) > least ||
+             (!by_place.empty() && std::abs(by_place[k]) + std::abs(by_resolution[k]) > least);
     };
     std::size_t begin = 0, end = weight.size();
     while (begin + 1 < end && !counts(begin)) ++begin;
     while (end > begin + 1 && !counts(end - 1)) --end;
     for (std::vector<double>* v : {&weight, &by_place, &by_resolution})
-      if (!v->empty()) *v = std::vector<double>(v->begin() + static_cast<std::ptrdiff_t>(begin), v->begin() + static_cast<std::ptrdiff_t>(end));
+      if (!v->empty())
+        *v = std::vector<double>(v->begin() + static_cast<std::ptrdiff_t>(begin),
+                                 v->begin() + static_cast<std::ptrdiff_t>(end));
     first += static_cast<int>(begin);
   }
 };

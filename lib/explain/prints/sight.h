@@ -37,9 +37,9 @@ class Seen {
 class Sight {
  public:
   struct View {
-    Vec2 shift_m{};          // of the map: what it shows lies so much less far
-    Vec3 shrinkage{};        // z is not read
-    Vec2 point_m{};          // that a point stands for
+    Vec2 shift_m{};    // of the map: what it shows lies so much less far
+    Vec3 shrinkage{};  // z is not read
+    Vec2 point_m{};    // that a point stands for
     double resolution_m = 0;
   };
   struct Slopes {  // by the view's shift, metre by metre, and resolution

@@ -11,7 +11,8 @@ constexpr double kept_bytes = 192e6;  // of each memo
 // How many of so many numbers of a cell.
 std::size_t kept(const Sent& sent, double bytes_of_a_cell, std::size_t most) {
   const double cells = cells_per_pixel * cells_per_pixel * static_cast<double>(sent.wide()) * sent.high();
-  return std::clamp(static_cast<std::size_t>(kept_bytes / std::max(1.0, bytes_of_a_cell * cells)), std::size_t{6}, most);
+  return std::clamp(static_cast<std::size_t>(kept_bytes / std::max(1.0, bytes_of_a_cell * cells)), std::size_t{6},
+                    most);
 }
 std::size_t kept_lights(const Sent& sent, std::size_t most) {
   return kept(sent, sizeof(float) * static_cast<double>(std::max<std::size_t>(1, sent.layers.size())), most);
