@@ -24,7 +24,8 @@ struct Bleed {
   double at(Vec2 offset_m, Vec2 pixel_m) const;
 };
 
-// The light of whole pictures of one size, spread: by Fourier transforms, whatever the width of the tails.
+// The light of whole pictures of one size, spread: a narrow core by sums along rows and columns, all else by Fourier
+// transforms, whatever the width of the tails.
 class Spread {
  public:
   // Light is asked for at `offset_px` from every pixel's centre.

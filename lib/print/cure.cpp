@@ -10,7 +10,7 @@
 namespace gonio::print {
 
 Cure::Cure(const Printer& printer, const PixelBox& box, int samples)
-    : printer_(printer), box_(box), samples_(std::max(1, samples)) {
+    : printer_(printer), box_(box), samples_(std::max(1, samples)), threshold_(printer.growth.threshold()) {
   const int wide = box.x_end - box.x_begin, high = box.y_end - box.y_begin;
   const PixelGrid grid = printer.grid();
   surface_.width = wide * samples_, surface_.height = high * samples_;
@@ -31,10 +31,15 @@ Cure::Cure(const Printer& printer, const PixelBox& box, int samples)
 void Cure::settle(std::size_t point, double own, double bottom_m, double top_m, double kept) {
   const double layer_m = top_m - bottom_m, all = own + kept * static_cast<double>(total_[point]);
   total_[point] = static_cast<float>(all);
+  if (threshold_ > 0 && !(all > threshold_)) return;
+  float &top = surface_.top_m[point], &under = surface_.underside_m[point];
+  const bool covered = std::isfinite(top), hangs = covered && own <= threshold_;
+  if (covered && !hangs && static_cast<double>(top) >= top_m) {  // its height is not seen
+    under = static_cast<float>(bottom_m);
+    return;
+  }
   const double height_m = std::min(printer_.growth.height_m(all, layer_m), layer_m);
   if (!(height_m > 0)) return;
-  float &top = surface_.top_m[point], &under = surface_.underside_m[point];
-  const bool hangs = std::isfinite(top) && own <= printer_.growth.threshold();
   if (!hangs && !(static_cast<double>(top) >= bottom_m + height_m)) {
     top = static_cast<float>(bottom_m + height_m);
     surface_.floor_m[point] = static_cast<float>(bottom_m), surface_.ceiling_m[point] = static_cast<float>(top_m);

@@ -43,6 +43,7 @@ class Cure {
   std::vector<Spread> spreads_;  // one for each of a pixel's points
   std::vector<float> total_;     // G of the layer above, of every point
   double above_m_ = 0;           // thickness of the layer above; 0: there is none
+  double threshold_ = 0;         // of the growth
   CuredSurface surface_;
 };
 

@@ -191,7 +191,11 @@ double GrowthLaw::threshold() const {
 }
 
 double GrowthLaw::height_m(double grey) const {
-  return grey > threshold() ? alpha_m + beta_m * std::log(grey - gamma) : 0;
+  if (!(grey > gamma)) return 0;
+  const double height_m = alpha_m + beta_m * std::log(grey - gamma);
+  // Beside the threshold, where rounding would decide, by the threshold itself; elsewhere the exponential is spared.
+  const double close = 1e-9 * beta_m;
+  return height_m > close || (height_m > -close && grey > threshold()) ? std::max(0.0, height_m) : 0;
 }
 
 double GrowthLaw::grey(double height_m) const {

@@ -51,8 +51,10 @@ std::vector<float> random_light(int pixels, std::uint64_t seed) {
   return light;
 }
 
-TEST(Spread, IsTheSumOverAllPixels) {
-  const Bleed bleed{8 * um, 0.1, 25 * um};
+// With a tail, by Fourier transforms; a core alone, along rows and columns.
+class Spreads : public testing::TestWithParam<double> {};
+TEST_P(Spreads, AreSumsOverAllPixels) {
+  const Bleed bleed{8 * um, GetParam(), 25 * um};
   const Vec2 pixel{15 * um, 12 * um}, offset{0.25, -0.25};
   constexpr int wide = 13, high = 9;
   const std::vector<float> light = random_light(wide * high, 5);
@@ -69,14 +71,15 @@ TEST(Spread, IsTheSumOverAllPixels) {
     }
 }
 
-TEST(Spread, BackwardsIsItsTranspose) {
-  const Spread spread({8 * um, 0.1, 25 * um}, {15 * um, 12 * um}, 17, 11, {0.1, 0.3});
+TEST_P(Spreads, AreTransposedBackwards) {
+  const Spread spread({8 * um, GetParam(), 25 * um}, {15 * um, 12 * um}, 17, 11, {0.1, 0.3});
   const std::vector<float> a = random_light(17 * 11, 1), b = random_light(17 * 11, 2);
   std::vector<float> ka(a.size()), kb(b.size());
   spread(a, ka), spread.backwards(b, kb);
   const double forward = std::inner_product(ka.begin(), ka.end(), b.begin(), 0.0);
   EXPECT_NEAR(forward, std::inner_product(a.begin(), a.end(), kb.begin(), 0.0), 1e-5 * forward);
 }
+INSTANTIATE_TEST_SUITE_P(Tails, Spreads, testing::Values(0.0, 0.1));
 
 Printer printer_with(const Growth& growth, double layer_m = 18 * um) {
   Printer p;

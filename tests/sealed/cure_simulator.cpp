@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 
 #include "base/parallel.h"
 
@@ -12,14 +14,31 @@ namespace {
 constexpr int depth_cells = 12, steps = 6;
 constexpr double critical_conversion = 0.3, darkest = 2e-3;
 
-// Scattered from every cell with the spread that it has there, along one axis.
+// The integral of the normal law's integral.
+double ramp(double u, double s) {
+  const double z = u / s;
+  return u * 0.5 * std::erfc(-z / std::sqrt(2.0)) + s * std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+}
+
+// Scattered from every cell, whose light is even, with the spread that it has there, along one axis: the share of a
+// cell j away is the mean over it of a cell's light under a Gaussian. From the middles of cells alone, a third of a
+// pixel apart, light would be spread by 0.1 pixels less than it is said to be, in the mean square.
 void spread_along(std::vector<double>& field, int side, bool along_x, const std::vector<double>& sigma) {
+  std::map<double, std::vector<double>> shares;  // of the cells from 0 on, by the spread; the other side is alike
+  for (const double s : sigma) {
+    if (s < 1e-6 || shares.contains(s)) continue;
+    std::vector<double>& own = shares[s];
+    for (int j = 0; j <= static_cast<int>(4.5 * s) + 2; ++j)
+      own.push_back(ramp(j + 1, s) - 2 * ramp(j, s) + ramp(j - 1, s));
+  }
   std::vector<double> result(field.size(), 0.0);
   parallel_for(0, static_cast<std::size_t>(side), [&](std::size_t line) {
     const auto at = [&](int k) {
       const std::size_t other = static_cast<std::size_t>(k), n = static_cast<std::size_t>(side);
       return along_x ? line * n + other : other * n + line;
     };
+    const std::vector<double>* own = nullptr;
+    double known = -1;
     for (int k = 0; k < side; ++k) {
       const double value = field[at(k)], s = sigma[at(k)];
       if (value == 0) continue;
@@ -27,11 +46,10 @@ void spread_along(std::vector<double>& field, int side, bool along_x, const std:
         result[at(k)] += value;
         continue;
       }
-      const int reach = static_cast<int>(4.5 * s) + 1;
-      for (int j = std::max(0, k - reach); j <= std::min(side - 1, k + reach); ++j) {
-        const double below = (j - k - 0.5) / (s * std::sqrt(2.0)), above = (j - k + 0.5) / (s * std::sqrt(2.0));
-        result[at(j)] += 0.5 * value * (std::erf(above) - std::erf(below));
-      }
+      if (s != known) own = &shares.at(s), known = s;
+      const int reach = static_cast<int>(own->size()) - 1;
+      for (int j = std::max(0, k - reach); j <= std::min(side - 1, k + reach); ++j)
+        result[at(j)] += value * (*own)[static_cast<std::size_t>(std::abs(j - k))];
     }
   });
   field.swap(result);

@@ -101,7 +101,10 @@ const std::vector<WorldEntry> entries{
      {3, 2, 2, 2, 1, 1}},
     {"prints",
      prints_world,
-     {{Kind::single, {"lamp"}, "no law", 3, 0}},
+     {{Kind::single, {"lamp"}, "no law", 3, 0},
+      {Kind::null, {}, "two prints", 3, 0},
+      {Kind::single, {"ground"}, "two prints", 5, 0},
+      {Kind::pair, {"ground", "pressed membrane"}, "two prints", 2, 0}},
      {8, 3, 4, 4, 2, 3},
      {2, 0, 1, 0, 0, 0, 2}}};
 

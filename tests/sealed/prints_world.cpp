@@ -1,7 +1,7 @@
 // A sample of patterns that a projector prints by light and an instrument measures from above: a simulator of its own
 // cures it (cure_simulator.h). Fields of 16 x 16 pixels in an order that is drawn: gradients, wedges, checkers of three
 // scales, lines, dots, pits, later layers too faint to cure, ledges. The manifest states the growth law that was fitted
-// to a wedge.
+// to a wedge. Design "two prints": the same twice, a map of each.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -86,6 +86,12 @@ class Prints final : public World {
           const double sign = far_side_ % 2 == 0 ? 1 : -1;
           return std::vector<TrueValue>{{"print.pixel-tilt", names[far_side_], sign * s[0] / side_px}};
         };
+    add({"ground", "print.ground-noise", stage, {}, 0.03, 0.1}).only_for("two prints").values =
+        [this](const Numbers& s) {
+          return std::vector<TrueValue>{
+              {"print.ground-noise", "rms_m", s[0] * layer_m_},
+              {"print.ground-noise", "length_m", std::sqrt(2.0) * ground_px_ * pixel_m_, true, false}};
+        };
     add({"rough", "", stage, {}, 0.03, 0.1});
     add({"oxygen from the sides", "", stage, {}, 0.15, 0.5});
     add({"scratched membrane", "", stage, {}, 0.06, 0.25});
@@ -95,6 +101,7 @@ class Prints final : public World {
 
   void design(Random& random, const std::string& variant) override {
     states_no_law_ = variant == "no law";
+    prints_ = variant == "two prints" ? 2 : 1;
     pixel_m_ = random.uniform(20e-6, 45e-6), layer_m_ = random.uniform(15e-6, 30e-6);
     cure_.side_px = side_px, cure_.layers = layers;
     cure_.penetration = random.uniform(0.45, 0.7), cure_.leak = random.uniform(0.002, 0.02);
@@ -113,21 +120,23 @@ class Prints final : public World {
     for (int k = 0; k <= 50; ++k) greys.push_back(k / 50.0);
     law_ = fitted(greys, wedge(cure_, greys));
     draw_pictures(random);
+    ground_px_ = prints_ > 1 ? random.uniform(1.2, 2.5) : 1.6;
   }
 
   Numbers base() const override { return {0}; }
   Numbers base_steps() const override { return {1}; }
   std::vector<Numbers> base_columns() const override {  // a plane, and where the map lies
     const Numbers z = simulate({}, {});
-    std::vector<Numbers> columns(5, Numbers(z.size(), 0.0));
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
-        const auto i = static_cast<std::size_t>(y * side + x);
-        columns[0][i] = 1e-6, columns[1][i] = 1e-6 * (x - side / 2) / side,
-        columns[2][i] = 1e-6 * (y - side / 2) / side;
-        if (x > 0 && x + 1 < side) columns[3][i] = z[i + 1] - z[i - 1];
-        if (y > 0 && y + 1 < side) columns[4][i] = z[i + side] - z[i - side];
-      }
+    std::vector<Numbers> columns(5 * prints_, Numbers(z.size(), 0.0));
+    for (std::size_t p = 0; p < prints_; ++p)
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+          const std::size_t i = cell(p, x, y);
+          Numbers* own = &columns[5 * p];
+          own[0][i] = 1e-6, own[1][i] = 1e-6 * (x - side / 2) / side, own[2][i] = 1e-6 * (y - side / 2) / side;
+          if (x > 0 && x + 1 < side) own[3][i] = z[i + 1] - z[i - 1];
+          if (y > 0 && y + 1 < side) own[4][i] = z[i + side] - z[i - side];
+        }
     return columns;
   }
 
@@ -136,10 +145,17 @@ class Prints final : public World {
       if (known == sizes) return heights;
     Numbers z = cured(with(sizes), pictures_);
     for (double& v : z) v *= layer_m_;
-    if (const double rough = size_of(sizes, "rough"); rough > 0) roughen(z, rough * layer_m_);
     if (sizes.contains("shrunk"))
       z = shrunk(z, size_of(sizes, "shrunk", 0), size_of(sizes, "shrunk", 1), size_of(sizes, "shrunk", 2));
-    simulated_.emplace_back(sizes, seen(z));
+    const double rough = std::max(size_of(sizes, "rough"), size_of(sizes, "ground"));
+    Numbers all;
+    for (std::size_t p = 0; p < prints_; ++p) {
+      Numbers own = z;
+      if (rough > 0) roughen(own, rough * layer_m_, p);
+      const Numbers map = seen(own);
+      all.insert(all.end(), map.begin(), map.end());
+    }
+    simulated_.emplace_back(sizes, std::move(all));
     return simulated_.back().second;
   }
   Numbers sigma(const Numbers& clean) const override { return Numbers(clean.size(), noise_m_); }
@@ -147,13 +163,14 @@ class Prints final : public World {
     Numbers z = clean;
     for (double& v : z) v += noise_m_ * random.normal();
     missing_.assign(z.size(), 0);
-    for (int y = 1; y + 1 < side; ++y)  // steep walls throw the light aside
-      for (int x = 1; x + 1 < side; ++x) {
-        const auto i = static_cast<std::size_t>(y * side + x);
-        const double steep = std::hypot(clean[i + 1] - clean[i - 1], clean[i + side] - clean[i - side]) /
-                             (2 * pixel_m_ / cells_per_pixel);
-        missing_[i] = random.uniform() < (steep > 1.2 ? 0.7 : 0.003);
-      }
+    for (std::size_t p = 0; p < prints_; ++p)
+      for (int y = 1; y + 1 < side; ++y)  // steep walls throw the light aside
+        for (int x = 1; x + 1 < side; ++x) {
+          const std::size_t i = cell(p, x, y);
+          const double steep = std::hypot(clean[i + 1] - clean[i - 1], clean[i + side] - clean[i - side]) /
+                               (2 * pixel_m_ / cells_per_pixel);
+          missing_[i] = random.uniform() < (steep > 1.2 ? 0.7 : 0.003);
+        }
     return z;
   }
   Numbers norm(const Numbers& observed) const override { return Numbers(observed.size(), 1e-12); }
@@ -165,20 +182,23 @@ class Prints final : public World {
   void write(const Numbers& observed, const Numbers&, Case& into) const override {
     const int kept = side - 2 * margin;
     const double step_m = pixel_m_ / cells_per_pixel;
-    Numbers z;  // rows from the top: from the largest y
-    for (int y = kept - 1; y >= 0; --y)
-      for (int x = 0; x < kept; ++x) {
-        const auto i = static_cast<std::size_t>((y + margin) * side + x + margin);
-        z.push_back(missing_[i] ? none : observed[i] + offset_m_ + slope_x_ * step_m * x + slope_y_ * step_m * y);
-      }
-    into.files["map.sur"] = profile(kept, kept, step_m, z);
+    for (std::size_t p = 0; p < prints_; ++p) {
+      Numbers z;  // rows from the top: from the largest y
+      for (int y = kept - 1; y >= 0; --y)
+        for (int x = 0; x < kept; ++x) {
+          const std::size_t i = cell(p, x + margin, y + margin);
+          z.push_back(missing_[i] ? none : observed[i] + offset_m_ + slope_x_ * step_m * x + slope_y_ * step_m * y);
+        }
+      into.files[file_of(p) + ".sur"] = profile(kept, kept, step_m, z);
+    }
     for (std::size_t k = 0; k < pictures_.size(); ++k) {
       io::Image image(side_px, side_px, {"Y"});
       for (std::size_t i = 0; i < pictures_[k].size(); ++i) image.data[i] = static_cast<float>(pictures_[k][i]);
       into.files[format("layer%04zu.png", k + 1)] = io::encode_raster_png(image);
     }
     Value m = Value::object();
-    m["reliefs"]["sample"] = Value::object({{"file", "map"}});
+    for (std::size_t p = 0; p < prints_; ++p)
+      m["reliefs"][p == 0 ? "sample" : "second"] = Value::object({{"file", file_of(p)}});
     Value print = Value::object({{"width_px", side_px}, {"height_px", side_px}, {"layer_m", layer_m_}});
     print["pixel_m"] = Value(std::vector<double>{pixel_m_, pixel_m_});
     print["layers"] = "layer0001";
@@ -186,15 +206,22 @@ class Prints final : public World {
       print["growth"] =
           Value::object({{"alpha_m", law_.alpha * layer_m_}, {"beta_m", law_.beta * layer_m_}, {"gamma", law_.gamma}});
     const double first = -0.5 * side_px * pixel_m_ + (margin + 0.5) * step_m;
-    Value map = Value::object({{"relief", "sample"}});
-    map["at_m"] = Value(std::vector<double>{first + misplaced_px_[0] * pixel_m_, -first + misplaced_px_[1] * pixel_m_});
     print["measured"] = Value::array();
-    print["measured"].as_array().push_back(map);
+    for (std::size_t p = 0; p < prints_; ++p) {
+      Value map = Value::object({{"relief", p == 0 ? "sample" : "second"}});
+      map["at_m"] =
+          Value(std::vector<double>{first + misplaced_px_[0] * pixel_m_, -first + misplaced_px_[1] * pixel_m_});
+      print["measured"].as_array().push_back(map);
+    }
     m["prints"]["p"] = print;
     finish(m, into);
   }
 
  private:
+  static std::size_t cell(std::size_t print, int x, int y) {
+    return print * side * side + static_cast<std::size_t>(y * side + x);
+  }
+  static std::string file_of(std::size_t print) { return print == 0 ? "map" : "map2"; }
   Cure with(const Sizes& sizes) const {
     Cure c = cure_;
     c.lamp = std::exp(size_of(sizes, "lamp"));
@@ -259,11 +286,11 @@ class Prints final : public World {
     }
   }
 
-  void roughen(Numbers& z, double rms_m) const {
-    Random random(ground_seed_, 5);
+  void roughen(Numbers& z, double rms_m, std::size_t print) const {
+    Random random(ground_seed_, 5 + print);
     std::vector<double> field(z.size());
     for (double& v : field) v = random.normal();
-    smoothed(field, side, 1.6 * cells_per_pixel);
+    smoothed(field, side, ground_px_ * cells_per_pixel);
     double squares = 0;
     for (const double v : field) squares += v * v;
     const double scale = rms_m / std::sqrt(squares / static_cast<double>(field.size()));
@@ -301,6 +328,8 @@ class Prints final : public World {
   std::array<double, 2> misplaced_px_{};
   int slips_at_ = 4, far_side_ = 0;
   bool states_no_law_ = false;
+  std::size_t prints_ = 1;
+  double ground_px_ = 1.6;
   std::uint64_t ground_seed_ = 0;
   mutable std::vector<std::pair<Sizes, Numbers>> simulated_;
   mutable std::vector<char> missing_;  // of what noisy() saw

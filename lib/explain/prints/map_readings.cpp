@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "explain/prints/sight.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain::prints {
@@ -81,7 +82,7 @@ void gather(const PrintsInput& input, std::size_t which, Readings& readings) {
 }
 
 void look_up(const Sent& sent, const Field& field, Readings& readings) {
-  const Seen top(field, field.top_m, Vec2{1, 1} * cells_per_pixel, usual_resolution_cells);  // means over pixels
+  const Seen top(field, Vec2{1, 1} * cells_per_pixel, usual_resolution_cells);  // means over pixels
   std::vector<double> bottoms{0};
   for (std::size_t k = 0; k < sent.layers.size(); ++k) bottoms.push_back(bottoms.back() + sent.printer.thickness_m(k));
   std::erase_if(readings.rows, [&](Reading& r) {
@@ -130,8 +131,11 @@ double noise_of(const Readings& readings, double layer_um) {
   return of.empty() ? 0 : 1.4826 * stats::median(of);
 }
 
-void divide(const PrintsInput& input, Readings& readings) {
-  for (std::size_t m = 0; m < input.maps.size(); ++m) {
+// Patches and tiles of `tile` x `tile` pixels, and the order of readings that they give.
+void divide(int tile, Readings& readings) {
+  std::size_t maps = 0;
+  for (const Reading& r : readings.rows) maps = std::max(maps, r.map + 1);
+  for (std::size_t m = 0; m < maps; ++m) {
     int x0 = 1 << 30, y0 = 1 << 30, x1 = 0, y1 = 0;
     for (const Reading& r : readings.rows)
       if (r.map == m)
@@ -140,7 +144,7 @@ void divide(const PrintsInput& input, Readings& readings) {
       if (r.map != m) continue;
       const int px = (r.x_px - x0) * patches / (x1 - x0 + 1), py = (r.y_px - y0) * patches / (y1 - y0 + 1);
       r.patch = static_cast<std::uint32_t>(py * patches + px);
-      r.tile = static_cast<std::uint32_t>((r.y_px - y0) / tile_px * 4096 + (r.x_px - x0) / tile_px);
+      r.tile = static_cast<std::uint32_t>((r.y_px - y0) / tile * 4096 + (r.x_px - x0) / tile);
     }
   }
   std::ranges::stable_sort(readings.rows, {}, [](const Reading& r) { return std::tuple(r.map, r.patch, r.tile); });
@@ -161,8 +165,13 @@ Readings readings_of(const PrintsInput& input) {
   for (Reading& r : readings.rows)
     r.sigma_um = std::hypot(readings.noise_um, wall_place_px * std::hypot(r.slope_x, r.slope_y),
                             wall_place_px * 0.5 * std::abs(r.bend));
-  divide(input, readings);
+  divide(tile_px, readings);
   return readings;
+}
+
+void add_noise(double rms_um, int tile, Readings& readings) {
+  for (Reading& r : readings.rows) r.sigma_um = std::hypot(r.sigma_um, rms_um);
+  divide(std::max(tile, tile_px), readings);
 }
 
 }  // namespace gonio::explain::prints

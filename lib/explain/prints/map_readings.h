@@ -27,5 +27,7 @@ struct Readings {
 };
 // Error(data) at the map's place where there are fewer than 400 readings.
 Readings readings_of(const PrintsInput& input);
+// Adds noise that is alike over some pixels: to every reading's, which then share blocks of `tile_px` x `tile_px`.
+void add_noise(double rms_um, int tile_px, Readings& readings);
 
 }  // namespace gonio::explain::prints

@@ -32,6 +32,7 @@ struct Term {
   void (*set)(Setting& setting, const Sent& sent, const Form& form, std::span<const double> p) = nullptr;
   double step = 2e-2;    // of differences, of a parameter's size
   bool gradual = false;  // Candidate::gradual
+  bool random = false;   // no simulation has it: it is asked apart (ground.h)
   // Into the printer's own section, which has a place for it; null: it becomes a mechanism in use. `covariance`: of p,
   // row by row.
   void (*write)(manifest::Print& print, const Sent& sent, std::span<const double> p,

@@ -48,25 +48,26 @@ std::vector<Condition> print_conditions(const PrintsInput& input, const Readings
     conditions.push_back(std::move(c));
   };
   const auto one = [](const Reading&) { return 1.0; };
-  const auto slope_x = [](const Reading& r) { return r.slope_x; };
-  const auto slope_y = [](const Reading& r) { return r.slope_y; };
-  const auto bend = [](const Reading& r) { return r.bend; };
+  const double layer_um = 1e6 * sent.printer.layer_m;
+  const auto slope_x = [=](const Reading& r) { return r.slope_x / layer_um; };
+  const auto slope_y = [=](const Reading& r) { return r.slope_y / layer_um; };
+  const auto bend = [=](const Reading& r) { return r.bend / layer_um; };
   const auto x = [&](const Reading& r) { return (r.at_m.x - sent.centre_m.x) / pixel.x; };
   const auto y = [&](const Reading& r) { return (r.at_m.y - sent.centre_m.y) / pixel.y; };
   const auto layer = [](const Reading& r) { return static_cast<double>(r.layer); };
   add(
-      "print.grey", "1", "um", [](const Reading& r) { return r.grey; }, one);
+      "print.grey", "1", "1", [](const Reading& r) { return r.grey; }, one);
   add(
-      "print.below-top", "um", "um", [](const Reading& r) { return r.below_top_um; }, one);
+      "print.below-top", "um", "1", [](const Reading& r) { return r.below_top_um; }, one);
   add(
-      "print.neighbours", "1", "um", [&](const Reading& r) { return neighbours(sent, r); }, one);
+      "print.neighbours", "1", "1", [&](const Reading& r) { return neighbours(sent, r); }, one);
   add(
-      "print.edge", "um", "um", [](const Reading& r) { return std::hypot(r.slope_x, r.slope_y); }, one);
+      "print.edge", "um", "1", [](const Reading& r) { return std::hypot(r.slope_x, r.slope_y); }, one);
   add(
-      "print.later-light", "1", "um", [&](const Reading& r) { return later_light(sent, r); }, one);
+      "print.later-light", "1", "1", [&](const Reading& r) { return later_light(sent, r); }, one);
   add(
-      "print.height", "um", "um", [](const Reading& r) { return r.height_um; }, one);
-  add("print.layer", "1", "um", layer, one);
+      "print.height", "um", "1", [](const Reading& r) { return r.height_um; }, one);
+  add("print.layer", "1", "1", layer, one);
   add("print.slope-x", "1", "px", layer, slope_x);
   add("print.slope-y", "1", "px", layer, slope_y);
   add("print.size-x", "px", "px", x, slope_x);

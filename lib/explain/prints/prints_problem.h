@@ -1,12 +1,13 @@
 // Maps of a printed surface against the simulation of what was sent to the printer.
 //
-// Observations: mean heights over the points of each pixel, um, each with the noise that even fields show from pixel to
-// pixel, and by how much a wall's place is uncertain (0.02 pixel). A score in um. Groups: sixteen patches of each map;
-// blocks of 4 x 4 pixels.
+// Observations: mean heights over the points of each pixel, in layers, each with the noise that even fields show from
+// pixel to pixel, and by how much a wall's place is uncertain (0.02 pixel). What matters is a share of a layer. Groups:
+// sixteen patches of each map; blocks of 4 x 4 pixels. What the printer adds at random (explain/prints/ground.h) is
+// asked before, and where it is there it is noise of the readings, and blocks are larger.
 //
-// Base model: what "prints" states of growth, bleed and overcure (print/cure.h); for each map a plane, where it lies
-// (by some tenths of a pixel) and the instrument's lateral resolution. Hypotheses: print.* (explain/prints/terms), one
-// file each.
+// Base model: what "prints" states of growth (white's height to 0.3 %), bleed (and a twentieth of a pixel by which
+// resins spread light themselves) and overcure (print/cure.h); for each map a plane, where it lies (by some tenths of a
+// pixel) and the instrument's lateral resolution. Hypotheses: print.* (explain/prints/terms), one file each.
 //
 // Frame of the platform (manifest/sections/print.h), metres.
 #pragma once
