@@ -23,7 +23,7 @@ using testing::Not;
 
 const fs::path source = GONIO_SOURCE;
 
-// One at a time: SlurmArrays*.*
+// One at a time: SlurmArrays.*
 class SlurmArrays : public testing::Test {
  protected:
   explicit SlurmArrays(int node_timeout_s = 120) : node_timeout_s_(node_timeout_s) {}
@@ -41,7 +41,7 @@ class SlurmArrays : public testing::Test {
     return all;
   }
   Process::Words slurm(const std::vector<std::string>& more) const {
-    Process::Words all = words({source / "scripts/slurm", "-f", "Makefile", "--poll", "0.3"});
+    Process::Words all = words({source / "scripts/slurm", "-f", "Makefile", "--poll", "0.3", "--again", "3"});
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
