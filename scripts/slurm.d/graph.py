@@ -1,11 +1,16 @@
-"""For scripts/slurm: the recipes that make would run, what each waits for, and arrays of them."""
+"""For scripts/slurm: the recipes that make would run, what each waits for, and arrays of them.
+
+Each recipe runs below a make of its own: variables that a target hands down to what it needs do not reach that. (With
+make alone they do where that target happens to be the first that asks.)
+"""
 import os
 import re
 import shlex
 import subprocess
 from collections import defaultdict
 
-USAGE, BAD_DATA, NO_DEVICE, CANNOT_CREATE, TRY_AGAIN = 64, 65, 69, 73, 75
+# Exit statuses, as in lib/base.
+USAGE, BAD_DATA, NO_DEVICE, CANNOT_CREATE, INPUT_OUTPUT, TRY_AGAIN = 64, 65, 69, 73, 74, 75
 
 
 class Failure(Exception):
@@ -131,13 +136,19 @@ def set_depths(jobs):
                 stack.pop()
 
 
+def patterns(job):
+    """The job's name with its stem replaced, wherever that stands: data/%.csv, d%ta/a.csv."""
+    name, stem = job.names[0], job.file.stem
+    return {name[:i] + "%" + name[i + len(stem):] for i in range(len(name)) if stem and name.startswith(stem, i)}
+
+
 class Array:
     def __init__(self, number, jobs):
         self.number, self.jobs = number, jobs  # by index
         self.id, self.most = None, 0
-        first = next(iter(jobs.values()))
-        stem = first.file.stem
-        self.name = first.names[0].replace(stem, "%") if stem and len(jobs) > 1 else first.names[0]
+        first, *_, last = [*jobs.values()] * 2
+        common = patterns(first) & patterns(last) if len(jobs) > 1 else set()
+        self.name = min(common, default=first.names[0])
 
     def indices(self):
         """0-3,5,7-8, and how many of them at once."""

@@ -23,12 +23,14 @@ using testing::Not;
 
 const fs::path source = GONIO_SOURCE;
 
+// One at a time: SlurmArrays.*
 class SlurmArrays : public testing::Test {
  protected:
+  explicit SlurmArrays(int node_timeout_s = 120) : node_timeout_s_(node_timeout_s) {}
   void SetUp() override {
     fs::create_directories(folder_ / "cluster");
     fs::create_directories(work_);
-    cluster_ = std::make_unique<Cluster>(folder_ / "cluster");
+    cluster_ = std::make_unique<Cluster>(folder_ / "cluster", node_timeout_s_);
     if (cluster_->missing().empty()) return;
     if (data_is_required()) FAIL() << cluster_->missing();
     GTEST_SKIP() << cluster_->missing();
@@ -39,7 +41,7 @@ class SlurmArrays : public testing::Test {
     return all;
   }
   Process::Words slurm(const std::vector<std::string>& more) const {
-    Process::Words all = words({source / "scripts/slurm", "-f", "Makefile", "--poll", "0.3"});
+    Process::Words all = words({source / "scripts/slurm", "-f", "Makefile", "--poll", "0.3", "--again", "3"});
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -67,6 +69,7 @@ class SlurmArrays : public testing::Test {
     return false;
   }
 
+  int node_timeout_s_;
   ScratchFolder folder_;
   fs::path work_ = folder_ / "work";
   std::unique_ptr<Cluster> cluster_;
@@ -153,8 +156,12 @@ TEST_F(SlurmArrays, StopAtAFailedRecipeAndSayWhereItsLogIs) {
   EXPECT_THAT(read_file(made.err.substr(at, made.err.find('\n', at) - at)), HasSubstr("bad.in] Error 1"));
 }
 
+struct SlurmArraysLosingANode : SlurmArrays {
+  SlurmArraysLosingANode() : SlurmArrays(5) {}
+};
+
 // n1 is lost while an element runs there; what that left is half a file, which a later attempt must not take for done.
-TEST_F(SlurmArrays, ANodesDeathLosesOnlyWhatRan) {
+TEST_F(SlurmArraysLosingANode, LoseOnlyWhatRan) {
   write_file(work_ / "Makefile", R"(
 .RECIPEPREFIX = >
 N = 1 2 3 4

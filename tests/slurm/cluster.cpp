@@ -46,7 +46,7 @@ std::string short_host_name() {
 }
 
 // One processor a node: what runs at the same time runs on different nodes. Arrays have five elements at most.
-std::string configuration(const fs::path& folder) {
+std::string configuration(const fs::path& folder, int node_timeout_s) {
   const auto ports = free_ports();
   const std::string host = short_host_name();
   std::ostringstream out;
@@ -59,7 +59,8 @@ std::string configuration(const fs::path& folder) {
          "JobAcctGatherType=jobacct_gather/none\nAccountingStorageType=accounting_storage/none\n"
          "SelectType=select/cons_tres\nSelectTypeParameters=CR_CPU\nSlurmdParameters=config_overrides\n"
          "SchedulerParameters=sched_interval=1,sched_min_interval=0,batch_sched_delay=0,bf_interval=1\n"
-         "SlurmdTimeout=4\nMessageTimeout=5\nKillWait=3\nMaxArraySize=5\n";
+         "KillWait=3\nMessageTimeout=5\nMaxArraySize=5\nSlurmdTimeout="
+      << node_timeout_s << "\n";
   for (const int node : {1, 2})
     out << "NodeName=n" << node << " NodeHostname=" << host
         << " NodeAddr=127.0.0.1 CPUs=1 RealMemory=500 Port=" << ports[static_cast<std::size_t>(node)] << "\n";
@@ -95,7 +96,7 @@ bool is_stepd(pid_t process) {
 
 }  // namespace
 
-Cluster::Cluster(const fs::path& folder) : folder_(folder) {
+Cluster::Cluster(const fs::path& folder, int node_timeout_s) : folder_(folder) {
   if (::geteuid() != 0) {
     missing_ = "munged and slurmd want to be root";
     return;
@@ -106,7 +107,7 @@ Cluster::Cluster(const fs::path& folder) : folder_(folder) {
       return;
     }
   fs::create_directories(folder / "state");
-  start_daemons();
+  start_daemons(node_timeout_s);
   const auto idle = [this] {
     Process::Words words = environment();
     for (const char* word : {"sinfo", "-h", "-N", "-o", "%T"}) words.emplace_back(word);
@@ -124,8 +125,8 @@ Cluster::Cluster(const fs::path& folder) : folder_(folder) {
   daemons_.clear();
 }
 
-void Cluster::start_daemons() {
-  write_file(folder_ / "slurm.conf", configuration(folder_));
+void Cluster::start_daemons(int node_timeout_s) {
+  write_file(folder_ / "slurm.conf", configuration(folder_, node_timeout_s));
   std::string key(128, '\0');
   std::random_device random;
   for (char& byte : key) byte = static_cast<char>(random());

@@ -13,7 +13,8 @@ namespace gonio::tests {
 
 class Cluster {
  public:
-  explicit Cluster(const std::filesystem::path& folder);
+  // A node that does not answer for node_timeout_s counts as lost; long, so that a busy machine loses none by accident.
+  explicit Cluster(const std::filesystem::path& folder, int node_timeout_s = 120);
   ~Cluster();
   Cluster(const Cluster&) = delete;
   Cluster& operator=(const Cluster&) = delete;
@@ -26,7 +27,7 @@ class Cluster {
   void lose_node(const std::string& name);
 
  private:
-  void start_daemons();
+  void start_daemons(int node_timeout_s);
   Process& start(const Process::Words& words);
   std::vector<pid_t> ours(const std::string& node) const;
 
