@@ -203,7 +203,7 @@ TEST_F(SlurmArrays, ATimeLimitIsResumedFrom) {
 n=$(cat saved 2>/dev/null || echo 0)
 trap 'echo $n > saved; exit 75' TERM
 echo from $n $SLURMD_NODENAME >> journal
-last=$([ -n "$SLURM_RESTART_COUNT" ] && echo $((n + 3)) || echo 1000000)
+last=$([ -n "$SLURM_RESTART_COUNT" ] && echo $((n + 3)) || echo 600)
 while [ $n -lt $last ]; do n=$((n + 1)); sleep 0.2 & wait $!; done
 echo to $n $SLURMD_NODENAME >> journal
 )");
