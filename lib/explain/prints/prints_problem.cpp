@@ -28,6 +28,7 @@ constexpr double um = 1e6, infinity = std::numeric_limits<double>::infinity();
 constexpr double place_sigma_px = 0.3, most_place_px = 3;
 constexpr double usual_resolution_px = 0.2, resolution_sigma_px = 0.15, coarsest_px = 1;
 constexpr double tilt_sigma = 0.1, white_sigma = 0.003, usual_spread_px = 0.05, most_spread_px = 0.25;
+constexpr double step_of_spread = 0.4;  // of differences, of a parameter's size; physics: Term::step
 constexpr double level_of_ground = 1e-3, lengths_of_a_block = 4;
 constexpr std::size_t kept_predictions = 64, kept_slopes = 256, kept_map_slopes = 16;
 
@@ -171,7 +172,8 @@ class PrintsProblem final : public Problem {
   // By a number of the physics: differences of surfaces.
   std::vector<double> slope(std::span<const double> values, std::size_t column) const {
     const Parameter& p = parameters_[column];
-    const double centre = values[column], step = (column < physics_ ? 1 : use_of(column).term->step) * p.size;
+    const double centre = values[column],
+                 step = (column < physics_ ? step_of_spread : use_of(column).term->step) * p.size;
     const double upper = std::min(centre + step, std::max(p.upper, centre)),
                  lower = std::max(centre - step, std::min(p.lower, centre));
     std::vector<double> moved(values.begin(), values.end());

@@ -202,10 +202,15 @@ TEST(PrintsProblem, DerivativesAreThoseOfPredictions) {
   const auto problem = prints_problem(measured(sent, stated(sent), 0.2e-6, 5));
   std::vector<double> values;
   for (const auto& p : problem->parameters()) values.push_back(p.neutral);
+  // Beside knots of weights, where slopes by places are as sure as they are anywhere. Of so little spread that it moves
+  // single cells over the threshold no difference is like another: ChangesEvenlyWithTheSpread asks where there is more.
+  for (const std::size_t p : problem->base())
+    if (problem->parameters()[p].unit == "px") values[p] += 0.013;
   for (const auto& c : problem->candidates())
     if (c.id() == mechanism::print_membrane().id || c.id() == mechanism::print_overcure().id)
       for (const std::size_t p : c.parameters) values[p] = problem->parameters()[p].start;
   std::vector<std::size_t> columns = problem->base();
+  std::erase_if(columns, [&](std::size_t p) { return problem->parameters()[p].name == "prints/p/bleed/spread_px"; });
   for (const auto& c : problem->candidates())
     if (c.id() == mechanism::print_overcure().id || c.id() == mechanism::print_shrinkage().id ||
         c.id() == mechanism::print_membrane().id)
@@ -216,8 +221,7 @@ TEST(PrintsProblem, DerivativesAreThoseOfPredictions) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto& p = problem->parameters()[columns[k]];
     std::vector<double> moved = values;
-    // Between knots weights are linear: slopes by places are those over a knot's distance.
-    const double step = p.unit == "px" ? 0.2 * p.size : 0.05 * p.size;
+    const double step = 0.05 * p.size;
     moved[columns[k]] = values[columns[k]] + step;
     problem->predict(moved, 5, above);
     moved[columns[k]] = values[columns[k]] - step;
