@@ -16,7 +16,8 @@ constexpr Rgb tints[] = {{12, 3, 9}, {4, 14, 40}, {30, 20, 4}, {10, 10, 10}};
 
 Rgb any_tint(Random& random) {
   if (random.uniform() < 0.5) return Rgb{0.6, 0.2, 0.5} * random.uniform(0.2, 2);  // clear: iron's green, faint
-  return tints[random.below(4)] * random.uniform(0.3, 2);
+  const Rgb tint = tints[random.below(4)];  // one draw a statement: operands have no order
+  return tint * random.uniform(0.3, 2);
 }
 
 // Balls of air in the glass, off its surface and off each other.

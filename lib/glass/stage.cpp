@@ -100,8 +100,8 @@ void add_glass(manifest::Document& scene, SharedFiles& files, const MadeObject& 
 void add_table(Cell& cell, Random& random) {
   manifest::Document& scene = cell.scene;
   scene.meshes["table"].plane_size_m = {table_m, table_m};
-  const Rgb colour =
-      Rgb{random.uniform(0.5, 1), random.uniform(0.5, 1), random.uniform(0.5, 1)} * random.uniform(0.1, 0.7);
+  const Rgb hue{random.uniform(0.5, 1), random.uniform(0.5, 1), random.uniform(0.5, 1)};
+  const Rgb colour = hue * random.uniform(0.1, 0.7);
   scene.surfaces["table"].parameters["albedo"] = std::vector<double>{colour.x, colour.y, colour.z};
   add_object(scene, "table", "table", "table", 0, {}, {});
 }

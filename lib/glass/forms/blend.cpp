@@ -3,16 +3,12 @@
 #include <functional>
 #include <vector>
 
+#include "glass/any_direction.h"
 #include "glass/form.h"
 #include "glass/implicit.h"
 
 namespace gonio::glass {
 namespace {
-
-Vec3 any_direction(Random& random) {
-  const double z = random.uniform(-1, 1), phi = random.uniform(0, 2 * pi), r = std::sqrt(1 - z * z);
-  return {r * std::cos(phi), r * std::sin(phi), z};
-}
 
 class Blend final : public Form {
  public:
@@ -23,7 +19,8 @@ class Blend final : public Form {
     const int count = 3 + static_cast<int>(random.below(6));
     Vec3 last{};
     for (int i = 0; i < count; ++i) {
-      const Vec3 at = i == 0 ? Vec3{} : any_direction(random) * random.uniform(0.1, 0.27);
+      const Vec3 aside = any_direction(random);
+      const Vec3 at = i == 0 ? Vec3{} : aside * random.uniform(0.1, 0.27);
       const double size = random.uniform(0.08, 0.16);
       parts.push_back([=](Vec3 p) { return norm(p - at) - size; });
       if (i > 0) {  // hangs together

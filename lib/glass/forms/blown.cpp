@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "glass/any_direction.h"
 #include "glass/form.h"
+#include "mesh/mesh.h"
 
 namespace gonio::glass {
 namespace {
@@ -14,8 +16,8 @@ class Waves {
  public:
   Waves(Random& random, double slowest, double fastest) {
     for (Wave& w : waves_) {
-      const double z = random.uniform(-1, 1), phi = random.uniform(0, 2 * pi), r = std::sqrt(1 - z * z);
-      w.k = Vec3{r * std::cos(phi), r * std::sin(phi), z} * random.uniform(slowest, fastest);
+      const Vec3 direction = any_direction(random);  // one draw a statement: operands have no order
+      w.k = direction * random.uniform(slowest, fastest);
       w.phase = random.uniform(0, 2 * pi), w.share = random.uniform(0.2, 1);
       sum_ += w.share;
     }
@@ -58,12 +60,7 @@ io::TriangleMesh star(const Radius& radius) {
     }
     mesh.triangles.push_back({last, at(down - 1, i + 1), at(down - 1, i)});
   }
-  mesh.normals.assign(mesh.positions_m.size(), {});
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 n = cross(mesh.positions_m[b] - mesh.positions_m[a], mesh.positions_m[c] - mesh.positions_m[a]);
-    for (const std::uint32_t v : {a, b, c}) mesh.normals[v] += n;
-  }
-  for (Vec3& n : mesh.normals) n = normalized(n);
+  mesh.normals = mesh::averaged_normals(mesh.positions_m, mesh.triangles);
   return mesh;
 }
 
