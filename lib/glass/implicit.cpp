@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "io/volume.h"
-#include "mesh/adjacency.h"
 #include "mesh/clean.h"
 #include "volume/contour.h"
 

@@ -33,7 +33,7 @@ class Lathe final : public Form {
     for (int i = 0; i < steps; ++i) {
       // Nearer together towards the top, where the dome turns.
       const double t = static_cast<double>(i) / steps,
-                   z = t < 1 - dome ? t : 1 - dome * std::cos((t - 1 + dome) / dome * pi / 2);
+                   z = t < 1 - dome ? t : 1 - dome + dome * std::sin((t - 1 + dome) / dome * pi / 2);
       places.push_back({rounded(std::min(z, 1.0)), z});
     }
     Body body;
