@@ -11,6 +11,9 @@ namespace {
 
 std::vector<Untouched> stack_reasons() {
   return {
+      {"polarizer.", "a stack has no geometry to tell how its light swings"},
+      {"screen.", "a stack has no geometry to tell how its light swings"},
+      {"retarder.", "a stack has no geometry to tell how its light swings"},
       {"print.", "heights of a voxel are below what pictures show"},
       {"projector.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
       {"rig.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
@@ -57,6 +60,7 @@ std::vector<Untouched> stack_reasons() {
       {"surface.spatial-variation", "albedo and tint are free at every patch"},
       {"surface.specular", "so few lamps find a lobe at most once or twice: too coarse a scan to part two"},
       {"surface.subsurface", "needs the distance to where light enters, and a stack has no geometry"},
+      {"surface.coating", "three channels under few lamps show one phase in ten: tables of a polarimeter"},
       {"surface.thin-film", "three channels under few lamps show one phase in ten: tables of reflectance"},
       {"volume.", "nothing is known to be transparent"},
       {"reference.", "a stack has no white tile beside it"},

@@ -12,7 +12,7 @@ const Domain& tables() {
       .name = "tables",
       .sentence =
           "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, probe, probe-radiance, "
-          "chart, temperature, ellipsometer, tracker, arm, expression)",
+          "chart, temperature, ellipsometer, polarimeter, tracker, arm, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,
       .problems = explain::tables::table_problems,
@@ -25,6 +25,7 @@ const Domain& tables() {
             return files;
           },
       .untouched = {
+          {"screen.", "a polarimeter has lamps of its own: what they send is told by its polarizer"},
           {"print.", "a table of readings has no pictures that were sent to a printer"},
           {"projector.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
           {"rig.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
