@@ -235,12 +235,10 @@ class PolarizationProblem final : public Problem {
       for (const mechanism::Parameter& info : m.parameters) {
         const bool fitted = std::ranges::find(form.parameters, info.name) != form.parameters.end();
         const double start = form.side < 0 ? 2 * info.neutral - info.start : info.start;
-        Parameter p{m.id + "." + of + info.name,
-                    info.unit,
-                    start,
-                    info.neutral,
-                    form.side > 0 ? info.neutral : info.lower,
-                    form.side < 0 ? info.neutral : info.upper};
+        Parameter p;
+        p.name = m.id + "." + of + info.name, p.unit = info.unit;
+        p.start = start, p.neutral = info.neutral;
+        p.lower = form.side > 0 ? info.neutral : info.lower, p.upper = form.side < 0 ? info.neutral : info.upper;
         if (form.upper > 0 && fitted) p.upper = form.upper;
         p.size = std::max(std::abs(start - info.neutral), 1e-3);
         if (fitted) candidate.parameters.push_back(parameters_.size());
