@@ -77,7 +77,8 @@ bool trace_pixels(const manifest::Document& document, std::vector<TracedPixels>&
                   std::uint64_t seed, Caustics caustics, Light light) {
   const scene::Scene scene = scene::build_scene(document);
   const render::RayCaster caster(scene.instances);
-  const render::Transport transport{.stokes = light == Light::polarized, .adaptive = false};
+  const bool polarized = light == Light::polarized;  // of screens: large enough for paths from the camera alone
+  const render::Transport transport{.stokes = polarized, .from_lights = !polarized, .adaptive = false};
   double pixels = 0;
   for (const TracedPixels& picture : pictures) pixels += static_cast<double>(picture.at.size());
   const render::SamplePlan plan =

@@ -31,7 +31,7 @@ namespace {
 constexpr std::uint64_t seed = 90;
 constexpr std::size_t tiles_in_all = 100, most_looked_at = 4 * tiles_in_all;
 constexpr double turn_rad = 0.2;  // between simulations of turned screens
-constexpr double stated_paths = 3.2e6, other_paths = 6.4e5, first_paths = 1;
+constexpr double stated_paths = 2e6, other_paths = 5e5, first_paths = 1;
 constexpr double dark = 0.02;                  // of the brightest
 constexpr double least_share_of_sites = 0.03;  // of a surface that is asked for its roughness
 constexpr std::size_t most_surfaces = 2;
