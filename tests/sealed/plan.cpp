@@ -109,7 +109,9 @@ const std::vector<WorldEntry> entries{
      {2, 0, 1, 0, 0, 0, 2}},
     {"polarization",
      polarization_world,
-     {{Kind::alike, {"leaky polarizers"}, "screen alone"}, {Kind::alike, {"turned screen"}, "screen alone"}},
+     {{Kind::alike, {"leaky polarizers"}, "even light", 4, 1},
+      {Kind::alike, {"crosstalk"}, "even light", 4, 1},
+      {Kind::alike, {"turned screen"}, "screen alone"}},
      {10, 4, 4, 6, 3, 3},
      {2, 1, 1, 2, 0, 1, 2}},
     {"polarimeter", polarimeter_world, {}, {14, 6, 8, 8, 0, 5}, {7, 3, 4, 5, 0, 4}}};

@@ -1,6 +1,7 @@
 // Mosaic photographs of a ball of metal and one of black glass between a polarized screen and an unpolarized panel, by
 // coherency matrices (coherent_light.h), in three wavelengths: three views, each with both lamps on and with the screen
-// alone. Design "screen alone": the balls are too small to tell how their light swings.
+// alone. Designs "even light" (as always: the light of a sample and of those beside it is alike, and crosstalk is a
+// leak of twice its share) and "screen alone" (the balls are too small to tell how their light swings).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +28,10 @@ class Polarization final : public World {
     const auto add = [&](EffectKind kind) -> EffectKind& { return k.emplace_back(std::move(kind)); };
     const std::vector<std::string> sensor{"sensor"}, light{"light"}, surface{"surface"};
     add({"leaky polarizers", "polarizer.leak", sensor, {"light.polarized-part", "sensor.neighbours"}, 0.01, 0.08})
-        .means({"leak"});
+        .only_for("even light")
+        .values = [](const Numbers& size) {
+      return std::vector<TrueValue>{{"polarizer.leak", "leak", size[0], false}};
+    };
     add({"turned polarizers", "polarizer.angle", sensor, {"light.polarized-across"}, 0.01, 0.07})
         .of_either_sign()
         .means({"turn_rad"});
@@ -36,6 +40,7 @@ class Polarization final : public World {
         .of_parts(3)
         .means({"turn_45_rad", "turn_90_rad", "turn_135_rad"});
     add({"crosstalk", "sensor.crosstalk", sensor, {"sensor.neighbours", "light.polarized-part"}, 0.004, 0.03})
+        .only_for("even light")
         .nearly("share");
     add({"stressed lens", "lens.birefringence", {"optics"}, {"camera.image-radius"}, 0.25, 1.2})
         .of_either_sign()

@@ -9,11 +9,8 @@ namespace gonio::explain::domains {
 
 namespace {
 
-std::vector<Untouched> stack_reasons() {
+std::vector<Untouched> reasons_one_by_one() {
   return {
-      {"polarizer.", "a stack has no geometry to tell how its light swings"},
-      {"screen.", "a stack has no geometry to tell how its light swings"},
-      {"retarder.", "a stack has no geometry to tell how its light swings"},
       {"print.", "heights of a voxel are below what pictures show"},
       {"projector.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
       {"rig.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
@@ -71,6 +68,13 @@ std::vector<Untouched> stack_reasons() {
       {"colour.",
        "a stack knows no reference colours: glare on it is optics.veiling-glare, on a chart tables of the model chart"},
       {"probe.", "mirror balls beside a stack are read by light-probe(1), which leaves tables of the model probe"}};
+}
+
+std::vector<Untouched> stack_reasons() {
+  std::vector<Untouched> all = reasons_one_by_one();
+  for (const char* ids : {"polarizer.", "screen.", "retarder."})
+    all.push_back({ids, "a stack has no geometry to tell how its light swings"});
+  return all;
 }
 
 }  // namespace

@@ -223,7 +223,7 @@ void MosaicLight::trace_roughness(const manifest::Document& document) {
   const Light stated = trace(document, other_paths, false);
   for (const RoughSurface& surface : setup_.rough) {
     Rough& rough = rough_.emplace_back();
-    for (const double more : {0.0, 0.02, 0.05, 0.1, 0.2, roughest}) {
+    for (const double more : {0.0, 0.02, 0.05, 0.085, 0.13, 0.2, roughest}) {
       rough.nodes.push_back(more);
       std::vector<StokesVector>& change = rough.change.emplace_back(sites_.size());
       if (more == 0) continue;

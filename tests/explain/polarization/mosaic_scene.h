@@ -65,8 +65,9 @@ inline void photograph_mosaics(const std::string& made, const std::filesystem::p
   const scene::Scene scene = scene::build_scene(document);
   const render::RayCaster caster(scene.instances);
   for (std::size_t k = 0; k < document.images.size(); ++k) {
-    const io::Image seen =
-        render::render(scene, k, caster, {.spp = 1024, .seed = seed, .geometry = false, .transport = {.stokes = true}});
+    const io::Image seen = render::render(
+        scene, k, caster,
+        {.spp = 256, .seed = seed, .geometry = false, .transport = {.stokes = true, .from_lights = false}});
     io::write_picture(folder / (document.images[k].id + ".exr"),
                       render::recorded(seen, render::sensor_of(document, k), document.images[k].id, seed));
   }
