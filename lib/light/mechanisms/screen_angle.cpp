@@ -20,7 +20,7 @@ const Mechanism& screen_angle() {
                       .upper = 0.8,
                       .start = 0.03,
                       .typical = 0.03,
-                      .meaning = "from the right towards up for who looks at it, of all screens"}},
+                      .meaning = "from the right towards up for who looks at it"}},
       .conditions = {"screen.polarized-across"},
       .mistaken_for = {{.with = "polarizer.angle", .told_apart = "light that a surface has polarized"},
                        {.with = "geometry.pose", .told_apart = "edges in the picture tell how the screen is rolled"}},

@@ -20,7 +20,7 @@ const Mechanism& screen_leak() {
                       .upper = 0.9,
                       .start = 0.02,
                       .typical = 0.03,
-                      .meaning = "light across the stated direction over that along it, of all screens"}},
+                      .meaning = "light across the stated direction over that along it"}},
       .conditions = {"screen.polarized-part"},
       .mistaken_for = {{.with = "polarizer.leak", .told_apart = "light that a surface has polarized"},
                        {.with = "surface.roughness", .told_apart = "look at the screen itself"}},

@@ -24,7 +24,7 @@ const Mechanism& lens_birefringence() {
                       .upper = 2,
                       .start = 0.4,
                       .typical = 0.3,
-                      .meaning = "half a picture's width from its axis; positive: light along the radius is late"}},
+                      .meaning = "half a picture's width from the axis: delay of light along the radius"}},
       .conditions = {"camera.image-radius"},
       .mistaken_for = {{.with = "polarizer.leak", .told_apart = "the middle of the picture"},
                        {.with = "polarizer.angle", .told_apart = "the middle of the picture"}},

@@ -17,17 +17,17 @@ using explain::tests::mosaic_scene, explain::tests::photograph_mosaics;
 using testing::HasSubstr;
 
 // What is found is switched on in what goes out, and that goes through again: nothing is left.
-TEST(ExplainPolarization, NamesALeakAndIsContentWithItsAnswer) {
+TEST(ExplainPolarization, NamesATurnAndIsContentWithItsAnswer) {
   ScratchFolder folder;
-  photograph_mosaics(mosaic_scene(R"(, "mechanisms": {"polarizer.leak": {"leak": 0.06}})"), folder.path(), 8);
+  photograph_mosaics(mosaic_scene(R"(, "mechanisms": {"polarizer.angle": {"turn_rad": 0.05}})"), folder.path(), 8);
   write_file(folder / "scene.json", mosaic_scene());
   const Ended ended = run({"explain", "scene.json", "-o", "out.json", "--out", "out"}, folder.path());
   ASSERT_EQ(ended.status, 0) << ended.err;
   const manifest::Document d = manifest::read_document(folder / "out.json");
   EXPECT_EQ(d.explanations.at(0).find("domain")->as_string(), "polarization");
-  EXPECT_THAT(d.explanations.at(0).find("sentence")->as_string(), HasSubstr("polarizer.leak"));
-  ASSERT_TRUE(d.mechanisms.contains("polarizer.leak"));
-  EXPECT_NEAR(d.mechanisms.at("polarizer.leak").parameters.at("leak").scalar(), 0.06, 0.006);
+  EXPECT_THAT(d.explanations.at(0).find("sentence")->as_string(), HasSubstr("polarizer.angle"));
+  ASSERT_TRUE(d.mechanisms.contains("polarizer.angle"));
+  EXPECT_NEAR(d.mechanisms.at("polarizer.angle").parameters.at("turn_rad").scalar(), 0.05, 0.003);
   const Ended again = run({"explain", "out.json", "-o", "again.json"}, folder.path());
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(manifest::read_document(folder / "again.json").explanations.at(0).find("verdict")->as_string(), "null");
