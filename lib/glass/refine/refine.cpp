@@ -1,0 +1,169 @@
+// See refine.h.
+#include "glass/refine/refine.h"
+
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace gonio::glass {
+namespace {
+
+constexpr double light_blurs_px[] = {16, 8, 4, 2};
+
+// The descent of one stage: coefficients and globals (index, absorption per cell) as one column.
+class Descending final : public optim::Descent {
+ public:
+  Descending(const Measuring& measuring, std::vector<Measurement> measurements, const SplineField& field,
+             const Glassy& glass, double blur_px, const SmoothPrior& prior)
+      : measuring_(measuring), measurements_(std::move(measurements)), field_(field), blur_px_(blur_px),
+        state_(field.coefficients), variance_(measurements_.size(), 0),
+        equations_(field_, prior, field.coefficients) {
+    state_.push_back(glass.index), state_.push_back(glass.absorption);
+  }
+
+  double cost() {
+    linearise();
+    return cost_at(state_, false);
+  }
+  void linearise() override { cost_at(state_, true); }
+  optim::Proposal propose(double damping) override {
+    optim::Proposal proposal;
+    trial_ = equations_.solve(damping, proposal.promised);
+    for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] += state_[i];
+    return proposal;
+  }
+  double evaluate() override {
+    const double index = trial_[trial_.size() - 2];
+    return index > 1.2 && index < 2.2 ? cost_at(trial_, false) : HUGE_VAL;
+  }
+  void accept() override { state_ = trial_; }
+
+  SplineField field() const {
+    SplineField field = field_;
+    field.coefficients.assign(state_.begin(), state_.end() - globals);
+    return field;
+  }
+  Glassy glass() const { return {state_[state_.size() - 2], state_.back()}; }
+  const NormalEquations& equations() const { return equations_; }
+
+ private:
+  double cost_at(const std::vector<double>& state, bool linear) {
+    SplineField field = field_;
+    field.coefficients.assign(state.begin(), state.end() - globals);
+    const Measuring::Asked asked{field, {state[state.size() - 2], state.back()}, blur_px_};
+    std::vector<double> costs(measurements_.size());
+    std::vector<Rows> rows(linear ? measurements_.size() : 0);
+    parallel_for(0, measurements_.size(), [&](std::size_t i) {
+      costs[i] = measuring_.cost(asked, measurements_[i], variance_[i], linear ? &rows[i] : nullptr);
+    }, 64);
+    if (linear) equations_.linearise(state, std::move(rows));
+    double sum = equations_.prior_cost(state);
+    for (const double c : costs) sum += c;
+    return sum;
+  }
+
+  const Measuring& measuring_;
+  std::vector<Measurement> measurements_;
+  SplineField field_;  // where the stage began; its grid
+  double blur_px_;
+  std::vector<double> state_, trial_, variance_;
+  NormalEquations equations_;
+};
+
+class Refinement {
+ public:
+  Refinement(std::span<const View> views, const RefineWish& wish)
+      : views_(views), wish_(wish), measuring_(views, wish.sigmas) {}
+
+  Refined run() {
+    std::vector<View> fitted;
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      if (v != wish_.held_out) fitted.push_back(views_[v]);
+    add("hull", hull_of(fitted, wish_.hull), {wish_.index, 0}, {});
+    descend("outline", each(&Measuring::outlines), 1, 6);
+    std::vector<Measurement> told = each(&Measuring::outlines), normals = each(&Measuring::normals);
+    if (!normals.empty()) {
+      told.insert(told.end(), normals.begin(), normals.end());
+      descend("normals", told, 1, 8);
+    }
+    refined_.answer = refined_.stages.size() - 1;
+    if (wish_.light) through_light(told);
+    return std::move(refined_);
+  }
+
+ private:
+  std::vector<Measurement> each(std::vector<Measurement> (Measuring::*of)(std::size_t) const) const {
+    std::vector<Measurement> all;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      if (v == wish_.held_out) continue;
+      const std::vector<Measurement> one = (measuring_.*of)(v);
+      all.insert(all.end(), one.begin(), one.end());
+    }
+    return all;
+  }
+  SmoothPrior prior(double cell_m) const {
+    SmoothPrior prior = wish_.prior;
+    prior.mean = {wish_.index, 0};
+    prior.sigma = {wish_.index_sigma, wish_.absorption_sigma_per_m * cell_m};
+    return prior;
+  }
+  void add(const std::string& name, SplineField field, const Glassy& glass, std::string how) {
+    Stage stage{name, std::move(field), glass, 0, 1, std::move(how)};
+    const Measuring::Asked asked{stage.field, glass, 1};
+    double count = 0;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      const double share = measuring_.unexplained(asked, v);
+      if (v == wish_.held_out) stage.unexplained_held_out = share;
+      if (v != wish_.held_out) stage.unexplained += share, ++count;
+    }
+    stage.unexplained /= count;
+    refined_.stages.push_back(std::move(stage));
+  }
+  void descend(const std::string& name, const std::vector<Measurement>& measurements, double blur_px, int steps) {
+    const Stage& from = refined_.stages.back();
+    Descending descending(measuring_, measurements, from.field, from.glass, blur_px, prior(from.field.cell_m()));
+    optim::Limits limits;
+    limits.most_steps = steps, limits.most_refusals = 6, limits.first_damping = 1e-3;
+    limits.small_fall = {1e-3, 0};
+    const optim::Descended ended = optim::descend(descending, descending.cost(), limits);
+    descending.linearise();
+    draw(descending);
+    add(name, descending.field(), descending.glass(), optim::sentence(ended));
+  }
+  void draw(const Descending& descending) {
+    refined_.draws.clear();
+    Random random(wish_.seed, 17);
+    for (int k = 0; k < wish_.draws; ++k) refined_.draws.push_back(descending.equations().draw(random));
+  }
+  void through_light(const std::vector<Measurement>& told) {
+    const auto kept = refined_.draws;
+    std::vector<Measurement> all = told, lights = each(&Measuring::lights);
+    all.insert(all.end(), lights.begin(), lights.end());
+    for (const double blur_px : light_blurs_px) descend(format_blur(blur_px), all, blur_px, 4);
+    const Stage &before = refined_.stages[refined_.answer], &after = refined_.stages.back();
+    const double was = wish_.held_out ? before.unexplained_held_out : before.unexplained;
+    const double is = wish_.held_out ? after.unexplained_held_out : after.unexplained;
+    if (is < was - wish_.least_gain) {
+      refined_.answer = refined_.stages.size() - 1;
+      double sum = 0;
+      for (const auto& change : refined_.draws) sum += change[change.size() - 2] * change[change.size() - 2];
+      refined_.index_sigma = wish_.draws > 0 ? std::sqrt(sum / wish_.draws) : 0;
+    } else {
+      refined_.draws = kept;
+    }
+  }
+  static std::string format_blur(double blur_px) { return "light-" + std::to_string(static_cast<int>(blur_px)); }
+
+  std::span<const View> views_;
+  RefineWish wish_;
+  Measuring measuring_;
+  Refined refined_;
+};
+
+}  // namespace
+
+Refined refine(std::span<const View> views, const RefineWish& wish) {
+  return Refinement(views, wish).run();
+}
+
+}  // namespace gonio::glass
