@@ -12,6 +12,7 @@ namespace {
 constexpr double leaving = 0.05;    // cells from a surface, before it can be met again
 constexpr double huber = 3;         // widths of the robust costs, standard deviations
 constexpr double bounded = 9;       // square of the width of the light's
+constexpr double floor_depth = 0.5, floor_sigma = 0.2;  // cells
 constexpr double band_px = 1.5, slack_px = 1, reach_px = 5;
 
 struct Robust {
@@ -41,7 +42,7 @@ std::vector<Measurement> Measuring::outlines(std::size_t number) const {
   std::vector<Measurement> all;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x)
-      if (std::abs(view.outline_px[view.pixel(x, y)]) < reach_px) all.push_back({Kind::outline, number, x, y});
+      if (std::abs(view.outline_px[view.pixel(x, y)]) < reach_px) all.push_back({Kind::outline, number, x, y, {}});
   return all;
 }
 
@@ -53,8 +54,8 @@ std::vector<Measurement> Measuring::normals(std::size_t number) const {
     for (int x = static_cast<int>(number % 3); x < view.width; x += sigmas_.normals_step) {
       const std::size_t at = view.pixel(x, y);
       if (view.outline_px[at] < 1) continue;
-      if (norm(view.network->front[at]) > 0) all.push_back({Kind::front, number, x, y});
-      if (norm(view.network->back[at]) > 0) all.push_back({Kind::back, number, x, y});
+      if (norm(view.network->front[at]) > 0) all.push_back({Kind::front, number, x, y, {}});
+      if (norm(view.network->back[at]) > 0) all.push_back({Kind::back, number, x, y, {}});
     }
   return all;
 }
@@ -64,7 +65,7 @@ std::vector<Measurement> Measuring::lights(std::size_t number) const {
   std::vector<Measurement> all, kept;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x)
-      if (view.outline_px[view.pixel(x, y)] > sigmas_.light_margin) all.push_back({Kind::light, number, x, y});
+      if (view.outline_px[view.pixel(x, y)] > sigmas_.light_margin) all.push_back({Kind::light, number, x, y, {}});
   const std::size_t step = all.size() / static_cast<std::size_t>(sigmas_.light_most) + 1;
   for (std::size_t i = 0; i < all.size(); i += step) kept.push_back(all[i]);
   return kept;
@@ -98,8 +99,38 @@ bool Measuring::refracted(const SplineField& field, const PixelRay& ray, double 
   const Vec3 outward2 = -normalized(path.second.jet.slope);
   const double c = dot(inside, outward2);
   if (!(c > 0) || (1 - c * c) * index * index >= 1) return false;
-  const Passage beyond = passage(field, exit, surface::refracted(-inside, -outward2, 1 / index), leaving);
-  return beyond.crossings.empty();
+  path.beyond = surface::refracted(-inside, -outward2, 1 / index);
+  return passage(field, exit, path.beyond, leaving).crossings.empty();
+}
+
+bool Measuring::hidden(const SplineField& field, std::size_t view, const Path& path) const {
+  const auto& others = views_[view].others;
+  const light::Panel& panel = views_[view].screen->panel();
+  const Vec3 exit_m = field.metres(path.second.at);
+  const double towards = -dot(path.beyond, panel.frame.n);
+  return others && towards > 0 &&
+         others->blocked(exit_m, path.beyond, dot(exit_m - panel.centre_m, panel.frame.n) / towards);
+}
+
+std::vector<Measurement> Measuring::floor(const SplineField& field, double z_m) const {
+  std::vector<Measurement> all;
+  for (int j = 2; j + 2 < field.nodes()[1]; ++j)
+    for (int i = 2; i + 2 < field.nodes()[0]; ++i) {
+      Vec3 point = field.metres({1.0 * i, 1.0 * j, 0});
+      point.z = z_m - floor_depth * field.cell_m();
+      all.push_back({Kind::floor, 0, i, j, point});
+    }
+  return all;
+}
+
+double Measuring::floor_cost(const Asked& asked, const Measurement& m, Rows* rows) const {
+  const Vec3 point = asked.field.cells(m.point_m);
+  const double r = std::max(0.0, asked.field.value(point) + floor_depth) / floor_sigma;
+  if (rows == nullptr || r == 0) return r * r;
+  rows->count = 1, rows->places = 1;
+  rows->at[0] = asked.field.support(point);
+  rows->residual[0] = r, rows->slopes[0][0] = 1 / floor_sigma;
+  return r * r;
 }
 
 double Measuring::outline_cost(const Asked& asked, const Measurement& m, Rows* rows) const {
@@ -150,10 +181,11 @@ double Measuring::normal_cost(const Asked& asked, const Measurement& m, Rows* ro
 
 double Measuring::light_cost(const Asked& asked, const Measurement& m, double& variance, Rows* rows) const {
   const View& view = views_[m.view];
-  const PixelRay line = ray(asked.field, m.view, m.x, m.y);
+  PixelRay line = ray(asked.field, m.view, m.x, m.y);
   const ScreenPicture screen = view.screen->scaled(asked.field.low_m(), asked.field.cell_m());
   Path path;
   if (!refracted(asked.field, line, asked.glass.index, path)) return bounded;
+  line.hidden = hidden(asked.field, m.view, path);
   const SeenThrough seen =
       seen_through(line, path.first, path.second, asked.glass, screen, *view.emitter, asked.blur_px);
   if (!seen.valid) return bounded;
@@ -182,6 +214,7 @@ double Measuring::light_cost(const Asked& asked, const Measurement& m, double& v
 
 double Measuring::cost(const Asked& asked, const Measurement& m, double& variance, Rows* rows) const {
   if (m.kind == Kind::outline) return outline_cost(asked, m, rows);
+  if (m.kind == Kind::floor) return floor_cost(asked, m, rows);
   if (m.kind == Kind::light) return light_cost(asked, m, variance, rows);
   return normal_cost(asked, m, rows);
 }

@@ -6,6 +6,8 @@
 // light    s0, s1, s2 of a pixel against what it sees through two refractions (two_refractions.h). Pixels whose ray is
 //          totally reflected, or meets the body again, count as badly explained and say nothing about how to mend it
 //
+// floor    points below what it stands on are not inside
+//
 // Costs are robust: of the normals and outlines pseudo-Huber's, of the light Geman and McClure's, which is bounded.
 #pragma once
 #include <memory>
@@ -19,11 +21,12 @@
 
 namespace gonio::glass {
 
-enum class Kind { outline, front, back, light };
+enum class Kind { outline, front, back, light, floor };
 struct Measurement {
   Kind kind = Kind::outline;
   std::size_t view = 0;
   int x = 0, y = 0;
+  Vec3 point_m{};  // floor
 };
 
 struct Sigmas {
@@ -44,6 +47,8 @@ class Measuring {
   std::vector<Measurement> normals(std::size_t view) const;  // none where no network saw it
   std::vector<Measurement> lights(std::size_t view) const;
 
+  std::vector<Measurement> floor(const SplineField& field, double z_m) const;
+
   // `variance`: of the screen's picture within the blur, kept from the last linearisation; written where `rows` is
   // asked for.
   struct Asked {
@@ -61,6 +66,7 @@ class Measuring {
   // The ray's two crossings; false where it has none, or (light) others.
   struct Path {
     Patch first, second;
+    Vec3 beyond{};  // direction of what leaves, refracted
   };
   bool straight(const SplineField& field, const PixelRay& ray, Path& path) const;
   bool refracted(const SplineField& field, const PixelRay& ray, double index, Path& path) const;
@@ -68,6 +74,8 @@ class Measuring {
  private:
   double outline_cost(const Asked& asked, const Measurement& m, Rows* rows) const;
   double normal_cost(const Asked& asked, const Measurement& m, Rows* rows) const;
+  double floor_cost(const Asked& asked, const Measurement& m, Rows* rows) const;
+  bool hidden(const SplineField& field, std::size_t view, const Path& path) const;
   double light_cost(const Asked& asked, const Measurement& m, double& variance, Rows* rows) const;
 
   std::span<const View> views_;

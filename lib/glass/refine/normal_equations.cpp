@@ -46,9 +46,10 @@ void NormalEquations::for_bends(const Visit& visit) const {
 
 double NormalEquations::prior_cost(const std::vector<double>& state) const {
   double cost = 0;
+  const double width2 = prior_.bend_width * prior_.bend_width;
   for_bends([&](const std::array<std::size_t, 4>& at, const std::array<double, 4>& w) {
     const double r = w[0] * state[at[0]] + w[1] * state[at[1]] + w[2] * state[at[2]] + w[3] * state[at[3]];
-    cost += r * r;
+    cost += 2 * width2 * (std::sqrt(1 + r * r / width2) - 1);
   });
   for (std::size_t i = 0; i < anchor_.size(); ++i) {
     const double r = (state[i] - anchor_[i]) / prior_.anchor_sigma;
@@ -79,9 +80,14 @@ void NormalEquations::linearise(const std::vector<double>& state, std::vector<Ro
         downhill_[n + g] -= row.residual[k] * slope, diagonal_[n + g] += slope * slope;
       }
     }
+  ease_.clear();
+  const double width2 = prior_.bend_width * prior_.bend_width;
   for_bends([&](const std::array<std::size_t, 4>& at, const std::array<double, 4>& w) {
     const double r = w[0] * state[at[0]] + w[1] * state[at[1]] + w[2] * state[at[2]] + w[3] * state[at[3]];
-    for (std::size_t k = 0; k < 4; ++k) downhill_[at[k]] -= r * w[k], diagonal_[at[k]] += w[k] * w[k];
+    const double weight = 1 / std::sqrt(1 + r * r / width2);
+    ease_.push_back(std::sqrt(weight));
+    for (std::size_t k = 0; k < 4; ++k)
+      downhill_[at[k]] -= weight * r * w[k], diagonal_[at[k]] += weight * w[k] * w[k];
   });
   const double anchored = 1 / (prior_.anchor_sigma * prior_.anchor_sigma);
   for (std::size_t i = 0; i < n; ++i)
@@ -121,8 +127,11 @@ void NormalEquations::add_rows(const Column& x, Column& to) const {
 NormalEquations::Column NormalEquations::multiplied(const Column& x) const {
   const std::size_t n = anchor_.size();
   Column y(n + globals, 0);
+  std::size_t number = 0;
   for_bends([&](const std::array<std::size_t, 4>& at, const std::array<double, 4>& w) {
-    const double r = w[0] * x[at[0]] + w[1] * x[at[1]] + w[2] * x[at[2]] + w[3] * x[at[3]];
+    const double weight = ease_[number] * ease_[number];
+    const double r = weight * (w[0] * x[at[0]] + w[1] * x[at[1]] + w[2] * x[at[2]] + w[3] * x[at[3]]);
+    ++number;
     for (std::size_t k = 0; k < 4; ++k) y[at[k]] += r * w[k];
   });
   const double anchored = 1 / (prior_.anchor_sigma * prior_.anchor_sigma);
@@ -174,8 +183,9 @@ std::vector<double> NormalEquations::draw(Random& random) const {
       }
       for (std::size_t g = 0; row.knows_globals && g < globals; ++g) right[n + g] += e * row.slopes[k][8 + g];
     }
+  std::size_t number = 0;
   for_bends([&](const std::array<std::size_t, 4>& at, const std::array<double, 4>& w) {
-    const double e = random.normal();
+    const double e = random.normal() * ease_[number++];
     for (std::size_t k = 0; k < 4; ++k) right[at[k]] += e * w[k];
   });
   for (std::size_t i = 0; i < n; ++i) right[i] += random.normal() / prior_.anchor_sigma;

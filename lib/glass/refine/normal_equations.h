@@ -25,7 +25,8 @@ struct Rows {
 };
 
 struct SmoothPrior {
-  double bend_sigma = 0.25;  // second differences of the coefficients, per cell
+  // Second differences of the coefficients, per cell; pseudo-Huber beyond so many deviations: edges are allowed.
+  double bend_sigma = 0.3, bend_width = 1.5;
   double anchor_sigma = 3;   // coefficients from where the stage began, cells
   std::array<double, globals> mean{}, sigma{1, 1};
 };
@@ -52,7 +53,7 @@ class NormalEquations {
 
   const SplineField& field_;
   SmoothPrior prior_;
-  Column anchor_, downhill_, diagonal_;
+  Column anchor_, downhill_, diagonal_, ease_;  // ease_: square roots of the bends' weights, in their order
   std::vector<Rows> rows_;
 };
 

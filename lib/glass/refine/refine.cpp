@@ -80,8 +80,12 @@ class Refinement {
     for (std::size_t v = 0; v < views_.size(); ++v)
       if (v != wish_.held_out) fitted.push_back(views_[v]);
     add("hull", hull_of(fitted, wish_.hull), {wish_.index, 0}, {});
-    descend("outline", each(&Measuring::outlines), 1, 6);
     std::vector<Measurement> told = each(&Measuring::outlines), normals = each(&Measuring::normals);
+    if (wish_.hull.floor_m) {
+      const auto floor = measuring_.floor(refined_.stages.front().field, *wish_.hull.floor_m);
+      told.insert(told.end(), floor.begin(), floor.end());
+    }
+    descend("outline", told, 1, 6);
     if (!normals.empty()) {
       told.insert(told.end(), normals.begin(), normals.end());
       descend("normals", told, 1, 8);
@@ -123,7 +127,7 @@ class Refinement {
     const Stage& from = refined_.stages.back();
     Descending descending(measuring_, measurements, from.field, from.glass, blur_px, prior(from.field.cell_m()));
     optim::Limits limits;
-    limits.most_steps = steps, limits.most_refusals = 6, limits.first_damping = 1e-3;
+    limits.most_steps = steps, limits.most_refusals = 10, limits.first_damping = 1e-3;
     limits.small_fall = {1e-3, 0};
     const optim::Descended ended = optim::descend(descending, descending.cost(), limits);
     descending.linearise();

@@ -79,7 +79,7 @@ SeenThrough seen_through(const PixelRay& ray, const Patch& first, const Patch& s
   if (!(c2 > 1e-3) || (1 - c2 * c2) * glass.index * glass.index > 1 - 1e-4) return seen;
   seen.valid = true;
   const Vec3 beyond = surface::refracted(-inside, -outward2, 1 / glass.index);
-  if (const auto look = screen.look(exit, beyond, blur_px)) {
+  if (const auto look = screen.look(exit, beyond, blur_px); look && !ray.hidden) {
     seen.meets_screen_plane = true;
     seen.place_px = look->place_px;
     Vec3 x;

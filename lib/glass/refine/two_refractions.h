@@ -29,6 +29,7 @@ struct Glassy {
 struct PixelRay {
   Vec3 origin, direction;  // unit
   Vec3 camera_x;           // of the picture, for the Stokes vector's frame
+  bool hidden = false;     // something stands between the body and the screen: nothing comes through
 };
 
 // s0, s1, s2; valid: false where the ray is totally reflected or misses a patch.

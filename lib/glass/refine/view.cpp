@@ -252,9 +252,12 @@ std::vector<float> distance_from_edge(const std::vector<float>& mask, int width,
 
 std::vector<View> views_in(const manifest::Document& document, const ViewFiles& files) {
   const scene::Scene scene = scene_of(document);
+  const auto others = std::make_shared<render::RayCaster>(scene.instances);
   std::vector<View> views;
-  for (std::size_t image = 0; image < document.images.size(); ++image)
+  for (std::size_t image = 0; image < document.images.size(); ++image) {
     views.push_back(view_of(document, image, scene, files));
+    views.back().others = others;
+  }
   if (views.size() < 3)
     throw Error(Exit::data, manifest::place(document, "/images"), "are fewer than 3 views",
                 "a shape needs views from all round");

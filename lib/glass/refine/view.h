@@ -14,6 +14,7 @@
 #include "glass/refine/screen_picture.h"
 #include "io/image.h"
 #include "manifest/sections/forward.h"
+#include "render/ray_caster.h"
 
 namespace gonio::glass {
 
@@ -36,6 +37,7 @@ struct View {
   double noise = 0;  // standard deviation of s0
   std::shared_ptr<const ScreenPicture> screen{};
   std::shared_ptr<const light::Emitter> emitter{};
+  std::shared_ptr<const render::RayCaster> others{};  // what else stands there: a platform; null: nothing
   std::optional<NetworkAnswer> network{};
 
   std::size_t pixel(int x, int y) const {
