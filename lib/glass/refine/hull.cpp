@@ -75,7 +75,7 @@ SplineField hull_of(std::span<const View> views, const HullWish& wish) {
         if (hull_at(views, wish, p) > 0) body.add(p);
       }
   if (!(body.high.x >= body.low.x))
-    throw Error(Exit::data, "masks", "have no point in common", "check the cameras' poses, and that one object is meant");
+    throw Error(Exit::data, "masks", "have nothing in common", "check the cameras' poses, and that one object is meant");
   const double cell = (max_component(body.high - body.low) + 2 * step) / wish.cells;
   const double margin = step + 4 * cell;
   const Vec3 low = body.low - Vec3{margin, margin, margin}, extent = body.high - low + Vec3{margin, margin, margin};

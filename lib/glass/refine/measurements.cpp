@@ -147,8 +147,13 @@ double Measuring::outline_cost(const Asked& asked, const Measurement& m, Rows* r
   const Robust robust = pseudo_huber(r * r);
   if (rows == nullptr || off == 0) return robust.cost;
   rows->count = 1, rows->places = 1;
-  rows->at[0] = asked.field.support(line.origin + line.direction * through.at);
+  const Vec3 deepest = line.origin + line.direction * through.at;
+  rows->at[0] = asked.field.support(deepest);
   rows->residual[0] = r, rows->slopes[0][0] = 1 / (worth * sigmas_.outline_px);
+  // The deepest place moves along the ray by -(direction . slope's change) / curvature, and a pixel's worth with it.
+  const double curvature = dot(line.direction, asked.field.jet(deepest).curve * line.direction);
+  const double by = curvature < -1e-3 ? found / (through.at * curvature * sigmas_.outline_px) : 0;
+  for (std::size_t l = 0; l < 3; ++l) rows->slopes[0][l + 1] = by * line.direction[static_cast<int>(l)];
   whiten(*rows, robust.weight);
   return robust.cost;
 }
@@ -163,8 +168,9 @@ double Measuring::normal_cost(const Asked& asked, const Measurement& m, Rows* ro
   const Patch& met = front ? path.first : path.second;
   const Vec3 told = view.world_from_camera_axes * (front ? view.network->front : view.network->back)[at];
   const double stated = (front ? view.network->front_sigma_rad : view.network->back_sigma_rad)[at];
-  // Errors that hang together over an area count as one: each of its pixels gets a share.
-  const double sigma = std::max(stated, 0.02) * std::max(1.0, sigmas_.normals_px / sigmas_.normals_step);
+  // An angle has two components. Errors that hang together over an area count as one: each pixel gets a share.
+  const double sigma =
+      std::max(stated, 0.02) / std::sqrt(2.0) * std::max(1.0, sigmas_.normals_px / sigmas_.normals_step);
   const Vec3 off = (-normalized(met.jet.slope) - told) / sigma;
   const Robust robust = pseudo_huber(dot(off, off));
   if (rows == nullptr) return robust.cost;

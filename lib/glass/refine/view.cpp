@@ -28,17 +28,6 @@ using Plane = std::vector<float>;
   throw Error(Exit::data, manifest::place(document, "/images/" + std::to_string(image)), what, remedy);
 }
 
-// Means of `factor` x `factor` pixels; what is left over at the right and below is dropped.
-Plane reduced(const Plane& plane, int width, int height, int factor) {
-  const int w = width / factor, h = height / factor;
-  Plane small(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
-  for (int y = 0; y < h * factor; ++y)
-    for (int x = 0; x < w * factor; ++x)
-      small[static_cast<std::size_t>(y / factor * w + x / factor)] +=
-          plane[static_cast<std::size_t>(y * width + x)] / static_cast<float>(factor * factor);
-  return small;
-}
-
 Plane plane_of(const io::Image& picture, int channel) {
   Plane plane(picture.pixels());
   for (std::size_t i = 0; i < plane.size(); ++i)
@@ -60,7 +49,7 @@ Plane light_plane(const io::Image& picture, const std::string& prefix) {
 
 std::array<Plane, 3> stokes_of(const io::Image& picture, bool behind_polarizers, const manifest::Document& document,
                                std::size_t image) {
-  std::array<Plane, 3> stokes{light_plane(picture, ""), light_plane(picture, "s1."), light_plane(picture, "s2.")};
+  std::array<Plane, 3> stokes = stokes_planes(picture);
   if (!stokes[1].empty() && !stokes[2].empty()) return stokes;
   if (!behind_polarizers || stokes[0].empty())
     refuse(document, image, "has neither Stokes planes s1, s2 nor a camera with \"mosaic\": \"polarizers\"",
@@ -209,6 +198,20 @@ View view_of(const manifest::Document& document, std::size_t image, const scene:
 }
 
 }  // namespace
+
+std::vector<float> reduced(const std::vector<float>& plane, int width, int height, int factor) {
+  const int w = width / factor, h = height / factor;
+  std::vector<float> small(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
+  for (int y = 0; y < h * factor; ++y)
+    for (int x = 0; x < w * factor; ++x)
+      small[static_cast<std::size_t>(y / factor * w + x / factor)] +=
+          plane[static_cast<std::size_t>(y * width + x)] / static_cast<float>(factor * factor);
+  return small;
+}
+
+std::array<std::vector<float>, 3> stokes_planes(const io::Image& picture) {
+  return {light_plane(picture, ""), light_plane(picture, "s1."), light_plane(picture, "s2.")};
+}
 
 Vec3 View::direction(double x, double y) const {
   const double shift = (reduced - 1) / 2.0;
