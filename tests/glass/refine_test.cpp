@@ -184,7 +184,7 @@ TEST_F(OneView, SlopesAreThoseOfTheCost) {
   int sloping = 0;
   for (const Measurement& m : some) {
     Rows rows;
-    double variance = 0;
+    double variance = -1;
     measuring.cost({field_, glass, 4}, m, variance, &rows);
     for (std::size_t i = 0; i < field_.size(); i += 7) {
       std::vector<double> unit(field_.size());
@@ -212,7 +212,7 @@ TEST_F(OneView, SlopesByIndexAndAbsorption) {
   const Measuring measuring(views_, {});
   const Measurement m{Kind::light, 0, 9, 13, {}};
   Rows rows;
-  double variance = 0;
+  double variance = -1;
   measuring.cost({field_, {1.52, 0.01}, 4}, m, variance, &rows);
   for (std::size_t g = 0; g < 2; ++g) {
     double slope = 0;

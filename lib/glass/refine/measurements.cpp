@@ -195,7 +195,7 @@ double Measuring::light_cost(const Asked& asked, const Measurement& m, double& v
   const SeenThrough seen =
       seen_through(line, path.first, path.second, asked.glass, screen, *view.emitter, asked.blur_px);
   if (!seen.valid) return bounded;
-  if (rows != nullptr) variance = seen.variance;
+  if (variance < 0) variance = seen.variance;
   const double share = sigmas_.light_share * screen.mean_luminance();
   const double sigma = std::sqrt(share * share + view.noise * view.noise + variance);
   std::array<double, 3> off{};
@@ -228,7 +228,7 @@ double Measuring::cost(const Asked& asked, const Measurement& m, double& varianc
 double Measuring::unexplained(const Asked& asked, std::size_t number) const {
   double sum = 0, count = 0;
   for (const Measurement& m : lights(number)) {
-    double variance = 0;
+    double variance = -1;
     sum += light_cost(asked, m, variance, nullptr) / bounded, ++count;
   }
   return count > 0 ? sum / count : 1;

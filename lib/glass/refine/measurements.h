@@ -33,7 +33,7 @@ struct Sigmas {
   double outline_px = 0.35;
   // Of a prediction, as a share of the screen's mean: what two refractions leave out. Neighbours err alike.
   double light_share = 0.15;
-  double normals_px = 8;    // a network's errors hang together over so many pixels
+  double normals_px = 5;    // a network's errors hang together over so many pixels
   int normals_step = 3;     // pixels between normals that are taken
   int light_most = 700;     // pixels of a view
   double light_margin = 2;  // px from the outline
@@ -49,8 +49,8 @@ class Measuring {
 
   std::vector<Measurement> floor(const SplineField& field, double z_m) const;
 
-  // `variance`: of the screen's picture within the blur, kept from the last linearisation; written where `rows` is
-  // asked for.
+  // `variance`: of the screen's picture within the blur, where the ray first found it: a descent has to hold on to it,
+  // or costs would not compare. Negative: not known yet, and written.
   struct Asked {
     const SplineField& field;
     Glassy glass;

@@ -2,6 +2,7 @@
 #include "glass/refine/refine.h"
 
 #include <cmath>
+#include <iterator>
 
 #include "base/parallel.h"
 
@@ -16,7 +17,7 @@ class Descending final : public optim::Descent {
   Descending(const Measuring& measuring, std::vector<Measurement> measurements, const SplineField& field,
              const Glassy& glass, double blur_px, const SmoothPrior& prior)
       : measuring_(measuring), measurements_(std::move(measurements)), field_(field), blur_px_(blur_px),
-        state_(field.coefficients), variance_(measurements_.size(), 0),
+        state_(field.coefficients), variance_(measurements_.size(), -1),
         equations_(field_, prior, field.coefficients) {
     state_.push_back(glass.index), state_.push_back(glass.absorption);
   }
@@ -85,10 +86,10 @@ class Refinement {
       const auto floor = measuring_.floor(refined_.stages.front().field, *wish_.hull.floor_m);
       told.insert(told.end(), floor.begin(), floor.end());
     }
-    descend("outline", told, 1, 6);
+    descend("outline", told, 1, 6, normals.empty());
     if (!normals.empty()) {
       told.insert(told.end(), normals.begin(), normals.end());
-      descend("normals", told, 1, 8);
+      descend("normals", told, 1, 8, true);
     }
     refined_.answer = refined_.stages.size() - 1;
     if (wish_.light) through_light(told);
@@ -123,15 +124,18 @@ class Refinement {
     stage.unexplained /= count;
     refined_.stages.push_back(std::move(stage));
   }
-  void descend(const std::string& name, const std::vector<Measurement>& measurements, double blur_px, int steps) {
+  void descend(const std::string& name, const std::vector<Measurement>& measurements, double blur_px, int steps,
+               bool draws) {
     const Stage& from = refined_.stages.back();
     Descending descending(measuring_, measurements, from.field, from.glass, blur_px, prior(from.field.cell_m()));
     optim::Limits limits;
     limits.most_steps = steps, limits.most_refusals = 10, limits.first_damping = 1e-3;
-    limits.small_fall = {1e-3, 0};
+    limits.small_fall = {3e-4, 0};
     const optim::Descended ended = optim::descend(descending, descending.cost(), limits);
-    descending.linearise();
-    draw(descending);
+    if (draws) {
+      descending.linearise();
+      draw(descending);
+    }
     add(name, descending.field(), descending.glass(), optim::sentence(ended));
   }
   void draw(const Descending& descending) {
@@ -143,7 +147,8 @@ class Refinement {
     const auto kept = refined_.draws;
     std::vector<Measurement> all = told, lights = each(&Measuring::lights);
     all.insert(all.end(), lights.begin(), lights.end());
-    for (const double blur_px : light_blurs_px) descend(format_blur(blur_px), all, blur_px, 4);
+    for (const double blur_px : light_blurs_px)
+      descend(format_blur(blur_px), all, blur_px, 6, blur_px == std::end(light_blurs_px)[-1]);
     const Stage &before = refined_.stages[refined_.answer], &after = refined_.stages.back();
     const double was = wish_.held_out ? before.unexplained_held_out : before.unexplained;
     const double is = wish_.held_out ? after.unexplained_held_out : after.unexplained;

@@ -47,10 +47,17 @@ void SplineField::visit(const Support& at, const Visit& visit) const {
 
 double SplineField::value(Vec3 point) const {
   const Support at = support(point);
+  const auto row = static_cast<std::size_t>(nodes_[0]), layer = row * static_cast<std::size_t>(nodes_[1]);
+  const auto& x = at.weight[0];
   double sum = 0;
-  visit(at, [&](std::size_t place, std::size_t i, std::size_t j, std::size_t k) {
-    sum += coefficients[place] * at.weight[0][i] * at.weight[1][j] * at.weight[2][k];
-  });
+  for (std::size_t k = 0; k < 4; ++k) {
+    double plane = 0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const double* c = &coefficients[at.first + k * layer + j * row];
+      plane += at.weight[1][j] * (c[0] * x[0] + c[1] * x[1] + c[2] * x[2] + c[3] * x[3]);
+    }
+    sum += at.weight[2][k] * plane;
+  }
   return sum;
 }
 
@@ -71,23 +78,36 @@ SplineField::Jet SplineField::jet(Vec3 point) const {
   return jet;
 }
 
+// One axis after the other: lines, planes, the whole.
 std::array<double, 4> SplineField::gather(const Support& at, const std::vector<double>& of) const {
+  const auto row = static_cast<std::size_t>(nodes_[0]), layer = row * static_cast<std::size_t>(nodes_[1]);
   const auto &w = at.weight, &d = at.slope;
   std::array<double, 4> sum{};
-  visit(at, [&](std::size_t place, std::size_t i, std::size_t j, std::size_t k) {
-    const double c = of[place];
-    sum[0] += c * w[0][i] * w[1][j] * w[2][k], sum[1] += c * d[0][i] * w[1][j] * w[2][k];
-    sum[2] += c * w[0][i] * d[1][j] * w[2][k], sum[3] += c * w[0][i] * w[1][j] * d[2][k];
-  });
+  for (std::size_t k = 0; k < 4; ++k) {
+    double plain = 0, along_x = 0, along_y = 0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const double* c = &of[at.first + k * layer + j * row];
+      const double line = c[0] * w[0][0] + c[1] * w[0][1] + c[2] * w[0][2] + c[3] * w[0][3];
+      const double slope = c[0] * d[0][0] + c[1] * d[0][1] + c[2] * d[0][2] + c[3] * d[0][3];
+      plain += line * w[1][j], along_x += slope * w[1][j], along_y += line * d[1][j];
+    }
+    sum[0] += plain * w[2][k], sum[1] += along_x * w[2][k], sum[2] += along_y * w[2][k], sum[3] += plain * d[2][k];
+  }
   return sum;
 }
 
 void SplineField::scatter(const Support& at, const std::array<double, 4>& amounts, std::vector<double>& to) const {
+  const auto row = static_cast<std::size_t>(nodes_[0]), layer = row * static_cast<std::size_t>(nodes_[1]);
   const auto &w = at.weight, &d = at.slope;
-  visit(at, [&](std::size_t place, std::size_t i, std::size_t j, std::size_t k) {
-    to[place] += w[2][k] * (w[1][j] * (amounts[0] * w[0][i] + amounts[1] * d[0][i]) + amounts[2] * w[0][i] * d[1][j]) +
-                 amounts[3] * w[0][i] * w[1][j] * d[2][k];
-  });
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double plain = amounts[0] * w[2][k] + amounts[3] * d[2][k];
+    const double along_x = amounts[1] * w[2][k], along_y = amounts[2] * w[2][k];
+    for (std::size_t j = 0; j < 4; ++j) {
+      double* c = &to[at.first + k * layer + j * row];
+      const double line = plain * w[1][j] + along_y * d[1][j], slope = along_x * w[1][j];
+      for (std::size_t i = 0; i < 4; ++i) c[i] += line * w[0][i] + slope * d[0][i];
+    }
+  }
 }
 
 void SplineField::scatter_squares(const Support& at, const std::array<double, 4>& amounts,
