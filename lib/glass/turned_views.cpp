@@ -28,7 +28,8 @@ void add_screen(manifest::Document& document, const Cell& cell, const std::strin
   manifest::Light screen = cell.scene.lights.at("screen");
   manifest::Parameters& p = screen.parameters;
   p["position_m"] = list(object_from_world * p.at("position_m").vector());
-  for (const char* direction : {"direction", "up"}) p[direction] = list(object_from_world.rotate(p.at(direction).vector()));
+  for (const char* direction : {"direction", "up"})
+    p[direction] = list(object_from_world.rotate(p.at(direction).vector()));
   screen.file = manifest::add_file(document, manifest::resolve(cell.scene, screen.file, "/lights/screen"), "shows");
   document.lights[id] = screen;
 }

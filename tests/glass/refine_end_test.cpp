@@ -59,8 +59,8 @@ TEST_F(RefinedLathe, LightExplainsTheViewThatWasKeptOut) {
   EXPECT_LT(std::abs(refined().best().glass.index - world().index), std::abs(wish().index - world().index));
 }
 
-// Of the normals that are the body's own, between 60 and 98 % lie within their stated deviation (68 % would, were it one
-// Gaussian for all), and at most a tenth beyond three.
+// Of the normals that are the body's own, between 60 and 98 % lie within their stated deviation (68 % would, were it
+// one Gaussian for all), and at most a tenth beyond three.
 TEST_F(RefinedLathe, StatesHonestDeviations) {
   const Measuring measuring(world().views, {});
   double within = 0, beyond = 0, count = 0;
@@ -101,7 +101,8 @@ TEST_F(RefinedLathe, BearsWrongMasks) {
 TEST_F(RefinedLathe, HasAMeshAndMaps) {
   const io::TriangleMesh mesh = mesh_of(refined().best().field);
   ASSERT_GT(mesh.triangles.size(), 500u);
-  for (const Vec3& p : mesh.positions_m) EXPECT_NEAR(refined().best().field.value(refined().best().field.cells(p)), 0, 0.15);
+  for (const Vec3& p : mesh.positions_m)
+    EXPECT_NEAR(refined().best().field.value(refined().best().field.cells(p)), 0, 0.15);
   const Measuring measuring(world().views, {});
   const io::Image maps = maps_of(refined(), measuring, held);
   const int c = maps.channel("thickness");

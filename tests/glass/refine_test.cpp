@@ -198,9 +198,9 @@ TEST_F(OneView, SlopesAreThoseOfTheCost) {
       if (slope == 0) continue;
       SplineField more = field_, less = field_;
       more.coefficients[i] += 1e-5, less.coefficients[i] -= 1e-5;
-      const double differs =
-          (measuring.cost({more, glass, 4}, m, variance, nullptr) -
-           measuring.cost({less, glass, 4}, m, variance, nullptr)) / 2e-5;
+      const double differs = (measuring.cost({more, glass, 4}, m, variance, nullptr) -
+                              measuring.cost({less, glass, 4}, m, variance, nullptr)) /
+                             2e-5;
       EXPECT_NEAR(slope, differs, 1e-3 * std::abs(differs) + 2e-5) << static_cast<int>(m.kind) << ' ' << i;
       ++sloping;
     }
@@ -218,7 +218,8 @@ TEST_F(OneView, SlopesByIndexAndAbsorption) {
     double slope = 0;
     for (std::size_t k = 0; k < 3; ++k) slope += 2 * rows.residual[k] * rows.slopes[k][8 + g];
     const auto at = [&](double step) {
-      return measuring.cost({field_, {1.52 + (g == 0 ? step : 0), 0.01 + (g == 1 ? step : 0)}, 4}, m, variance, nullptr);
+      return measuring.cost({field_, {1.52 + (g == 0 ? step : 0), 0.01 + (g == 1 ? step : 0)}, 4}, m, variance,
+                            nullptr);
     };
     EXPECT_NEAR(slope, (at(1e-5) - at(-1e-5)) / 2e-5, 1e-3 * std::abs(slope) + 1e-6) << g;
   }

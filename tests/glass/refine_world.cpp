@@ -43,8 +43,7 @@ double degrees_between(Vec3 a, Vec3 b) {
 Cell simplified(Cell cell, bool clear) {
   std::erase_if(cell.scene.images, [](const manifest::ImageEntry& i) { return i.id != "bare"; });
   if (!clear) return cell;
-  std::erase_if(cell.scene.objects,
-                [](const manifest::Object& o) { return o.id != "object" && o.id != "table"; });
+  std::erase_if(cell.scene.objects, [](const manifest::Object& o) { return o.id != "object" && o.id != "table"; });
   cell.scene.surfaces.at("glass").parameters.erase("alpha");
   return cell;
 }
@@ -94,7 +93,8 @@ void add_stand_in(World& world, double front_deg, double back_deg, double reach_
         if (norm(normals[i]) > 0.5) normals[i] = matrix_of(quaternion_of_rotation_vector(by)) * normals[i];
       }
       (front ? answer.front : answer.back) = std::move(normals);
-      (front ? answer.front_sigma_rad : answer.back_sigma_rad).assign(view.outline_px.size(), static_cast<float>(sigma));
+      (front ? answer.front_sigma_rad : answer.back_sigma_rad)
+          .assign(view.outline_px.size(), static_cast<float>(sigma));
     }
     view.network = std::move(answer);
   }

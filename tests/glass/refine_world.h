@@ -39,8 +39,7 @@ struct Angles {  // mean, degrees; over pixels of all views but the one held out
   double front = 0, back = 0, held_front = 0, held_back = 0;
 };
 // `normal(view, x, y, front)` in the world's frame; the zero vector counts as 90 degrees.
-Angles angles(const World& world, std::size_t held_out,
-              const std::function<Vec3(std::size_t, int, int, bool)>& normal);
+Angles angles(const World& world, std::size_t held_out, const std::function<Vec3(std::size_t, int, int, bool)>& normal);
 Angles angles_of(const World& world, const Stage& stage, std::size_t held_out);
 Angles angles_of_network(const World& world, std::size_t held_out);
 

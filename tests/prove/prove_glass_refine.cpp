@@ -34,15 +34,16 @@ void measure(const WorldWish& wish, const std::filesystem::path& folder, double 
   const Refined refined = refine(world.views, refine_wish);
   const Angles network = angles_of_network(world, held);
   std::printf("%s seed %llu object %zu (%s, index %.3f)\n  network              %5.1f %5.1f\n", wish.form.c_str(),
-              static_cast<unsigned long long>(wish.seed), wish.object, world.glass.c_str(), world.index,
-              network.front, network.back);
+              static_cast<unsigned long long>(wish.seed), wish.object, world.glass.c_str(), world.index, network.front,
+              network.back);
   sums.network_front += network.front, sums.network_back += network.back, ++sums.count;
   for (std::size_t s = 0; s < refined.stages.size(); ++s) {
     const Stage& stage = refined.stages[s];
     const Angles a = angles_of(world, stage, held);
-    std::printf("  %-10s %c         %5.1f %5.1f  held out %5.1f %5.1f  unexplained %.3f, held out %.3f  index %.3f  %s\n",
-                stage.name.c_str(), s == refined.answer ? '*' : ' ', a.front, a.back, a.held_front, a.held_back,
-                stage.unexplained, stage.unexplained_held_out, stage.glass.index, stage.how.c_str());
+    std::printf(
+        "  %-10s %c         %5.1f %5.1f  held out %5.1f %5.1f  unexplained %.3f, held out %.3f  index %.3f  %s\n",
+        stage.name.c_str(), s == refined.answer ? '*' : ' ', a.front, a.back, a.held_front, a.held_back,
+        stage.unexplained, stage.unexplained_held_out, stage.glass.index, stage.how.c_str());
     sums.stages[stage.name].first += a.front, sums.stages[stage.name].second += a.back;
     if (s == refined.answer) sums.answer_front += a.front, sums.answer_back += a.back;
   }

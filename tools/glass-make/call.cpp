@@ -227,7 +227,8 @@ std::vector<cli::Option> options() {
        .conflicts = {"shard"}},
       {.name = "recording",
        .type = Type::text,
-       .help = "Write the views of this object, counted from 0, as one recording without the object: object-NUMBER.json.",
+       .help =
+           "Write the views of this object, counted from 0, as one recording without the object: object-NUMBER.json.",
        .metavar = "NUMBER",
        .repeat = true,
        .conflicts = {"shard", "cell"}},

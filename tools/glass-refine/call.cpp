@@ -84,7 +84,8 @@ void enter_comparison(manifest::Document& document, std::size_t image, const Vie
   comparison.pixels = pixels;
   document.comparisons.push_back(std::move(comparison));
   log(LogLevel::info, format("image %zu, kept out: the rendering with the hull differs from the photograph by %.3f of "
-                             "the screen's mean, with the refined body by %.3f", image, before, after));
+                             "the screen's mean, with the refined body by %.3f",
+                             image, before, after));
 }
 
 void write_maps(cli::Invocation& call, const Refined& refined, const Measuring& measuring, std::size_t views) {
@@ -179,8 +180,9 @@ Exit run(cli::Invocation& call) {
   enter_body(call.document, refined.best(), refined.index_sigma, name_of_body, call.out / "refined.ply");
   if (call.integer("spp") > 0) enter_comparison(call.document, image, views[image], before, after);
   if (wish.light && refined.index_sigma == 0)
-    log(LogLevel::warning, "two refractions do not explain the view that was kept out any better: the answer is that of "
-                           "outlines and network, the index is the one given; is the object hollow?");
+    log(LogLevel::warning,
+        "two refractions do not explain the view that was kept out any better: the answer is that of "
+        "outlines and network, the index is the one given; is the object hollow?");
   return Exit::done;
 }
 

@@ -96,12 +96,10 @@ io::Image maps_of(const Refined& refined, const Measuring& measuring, std::size_
       believe_network(view, view.pixel(x, y), true, front);
       believe_network(view, view.pixel(x, y), false, back);
       maps.at(x, y, 0) = 1;
-      maps.at(x, y, 1) =
-          static_cast<float>((camera_from_world * (path.first.at - ray.origin)).z * field.cell_m());
+      maps.at(x, y, 1) = static_cast<float>((camera_from_world * (path.first.at - ray.origin)).z * field.cell_m());
       put(maps, x, y, 2, front);
       put(maps, x, y, 6, back);
-      maps.at(x, y, 10) =
-          static_cast<float>(thickness(passage(field, ray.origin, ray.direction)) * field.cell_m());
+      maps.at(x, y, 10) = static_cast<float>(thickness(passage(field, ray.origin, ray.direction)) * field.cell_m());
     }
   return maps;
 }

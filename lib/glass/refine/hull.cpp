@@ -34,7 +34,8 @@ Box cube_round(std::span<const View> views) {
     double farthest = 0;
     for (int y = 0; y < view.height; ++y)
       for (int x = 0; x < view.width; ++x)
-        if (view.outline_px[view.pixel(x, y)] > 0) farthest = std::max(farthest, std::hypot(x - middle.x, y - middle.y));
+        if (view.outline_px[view.pixel(x, y)] > 0)
+          farthest = std::max(farthest, std::hypot(x - middle.x, y - middle.y));
     const Vec3 d = view.direction(middle.x, middle.y), eye = view.eye_m();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) normal(i, j) += (i == j ? 1 : 0) - d[i] * d[j];
@@ -75,7 +76,8 @@ SplineField hull_of(std::span<const View> views, const HullWish& wish) {
         if (hull_at(views, wish, p) > 0) body.add(p);
       }
   if (!(body.high.x >= body.low.x))
-    throw Error(Exit::data, "masks", "have nothing in common", "check the cameras' poses, and that one object is meant");
+    throw Error(Exit::data, "masks", "have nothing in common",
+                "check the cameras' poses, and that one object is meant");
   const double cell = (max_component(body.high - body.low) + 2 * step) / wish.cells;
   const double margin = step + 4 * cell;
   const Vec3 low = body.low - Vec3{margin, margin, margin}, extent = body.high - low + Vec3{margin, margin, margin};

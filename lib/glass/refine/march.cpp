@@ -66,8 +66,7 @@ Passage passage(const SplineField& field, Vec3 origin, Vec3 direction, double fr
   while (t < high) {
     const double next = std::min(high, t + std::clamp(0.6 * std::abs(f), 0.25, 1.5));
     const double g = field.value(origin + direction * next);
-    if ((f > 0) != (g > 0))
-      all.crossings.push_back({zero(field, origin, direction, t, f, next, g), g > 0});
+    if ((f > 0) != (g > 0)) all.crossings.push_back({zero(field, origin, direction, t, f, next, g), g > 0});
     if (g > all.greatest) all.greatest = g, all.at = next;
     t = next, f = g;
   }

@@ -9,9 +9,9 @@
 namespace gonio::glass {
 namespace {
 
-constexpr double leaving = 0.05;    // cells from a surface, before it can be met again
-constexpr double huber = 3;         // widths of the robust costs, standard deviations
-constexpr double bounded = 9;       // square of the width of the light's
+constexpr double leaving = 0.05;                        // cells from a surface, before it can be met again
+constexpr double huber = 3;                             // widths of the robust costs, standard deviations
+constexpr double bounded = 9;                           // square of the width of the light's
 constexpr double floor_depth = 0.5, floor_sigma = 0.2;  // cells
 constexpr double band_px = 1.5, slack_px = 1, reach_px = 5;
 
@@ -208,8 +208,7 @@ double Measuring::light_cost(const Asked& asked, const Measurement& m, double& v
   if (rows == nullptr) return robust.cost;
   rows->count = 3, rows->places = 2, rows->knows_globals = true;
   rows->at = {asked.field.support(path.first.at), asked.field.support(path.second.at)};
-  const PathSlopes slopes =
-      slopes_of(line, path.first, path.second, asked.glass, screen, *view.emitter, asked.blur_px);
+  const PathSlopes slopes = slopes_of(line, path.first, path.second, asked.glass, screen, *view.emitter, asked.blur_px);
   for (std::size_t k = 0; k < 3; ++k) {
     rows->residual[k] = off[k];
     for (std::size_t n = 0; n < path_numbers; ++n) rows->slopes[k][n] = slopes[k][n] / sigma;

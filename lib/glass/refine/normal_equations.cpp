@@ -9,7 +9,7 @@ namespace gonio::glass {
 namespace {
 
 constexpr int most_iterations = 120;
-constexpr double enough = 2e-3;     // of the residual's first length
+constexpr double enough = 2e-3;    // of the residual's first length
 constexpr std::size_t chunks = 4;  // of rows that are summed up apart; not the number of threads
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -86,12 +86,10 @@ void NormalEquations::linearise(const std::vector<double>& state, std::vector<Ro
     const double r = w[0] * state[at[0]] + w[1] * state[at[1]] + w[2] * state[at[2]] + w[3] * state[at[3]];
     const double weight = 1 / std::sqrt(1 + r * r / width2);
     ease_.push_back(std::sqrt(weight));
-    for (std::size_t k = 0; k < 4; ++k)
-      downhill_[at[k]] -= weight * r * w[k], diagonal_[at[k]] += weight * w[k] * w[k];
+    for (std::size_t k = 0; k < 4; ++k) downhill_[at[k]] -= weight * r * w[k], diagonal_[at[k]] += weight * w[k] * w[k];
   });
   const double anchored = 1 / (prior_.anchor_sigma * prior_.anchor_sigma);
-  for (std::size_t i = 0; i < n; ++i)
-    downhill_[i] -= (state[i] - anchor_[i]) * anchored, diagonal_[i] += anchored;
+  for (std::size_t i = 0; i < n; ++i) downhill_[i] -= (state[i] - anchor_[i]) * anchored, diagonal_[i] += anchored;
   for (std::size_t g = 0; g < globals; ++g) {
     const double weight = 1 / (prior_.sigma[g] * prior_.sigma[g]);
     downhill_[n + g] -= (state[n + g] - prior_.mean[g]) * weight, diagonal_[n + g] += weight;

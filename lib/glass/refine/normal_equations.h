@@ -27,7 +27,7 @@ struct Rows {
 struct SmoothPrior {
   // Second differences of the coefficients, per cell; pseudo-Huber beyond so many deviations: edges are allowed.
   double bend_sigma = 0.6, bend_width = 1.5;
-  double anchor_sigma = 3;   // coefficients from where the stage began, cells
+  double anchor_sigma = 3;  // coefficients from where the stage began, cells
   std::array<double, globals> mean{}, sigma{1, 1};
 };
 

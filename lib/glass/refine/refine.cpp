@@ -16,8 +16,12 @@ class Descending final : public optim::Descent {
  public:
   Descending(const Measuring& measuring, std::vector<Measurement> measurements, const SplineField& field,
              const Glassy& glass, double blur_px, const SmoothPrior& prior)
-      : measuring_(measuring), measurements_(std::move(measurements)), field_(field), blur_px_(blur_px),
-        state_(field.coefficients), variance_(measurements_.size(), -1),
+      : measuring_(measuring),
+        measurements_(std::move(measurements)),
+        field_(field),
+        blur_px_(blur_px),
+        state_(field.coefficients),
+        variance_(measurements_.size(), -1),
         equations_(field_, prior, field.coefficients) {
     state_.push_back(glass.index), state_.push_back(glass.absorption);
   }
@@ -54,9 +58,12 @@ class Descending final : public optim::Descent {
     const Measuring::Asked asked{field, {state[state.size() - 2], state.back()}, blur_px_};
     std::vector<double> costs(measurements_.size());
     std::vector<Rows> rows(linear ? measurements_.size() : 0);
-    parallel_for(0, measurements_.size(), [&](std::size_t i) {
-      costs[i] = measuring_.cost(asked, measurements_[i], variance_[i], linear ? &rows[i] : nullptr);
-    }, 64);
+    parallel_for(
+        0, measurements_.size(),
+        [&](std::size_t i) {
+          costs[i] = measuring_.cost(asked, measurements_[i], variance_[i], linear ? &rows[i] : nullptr);
+        },
+        64);
     if (linear) equations_.linearise(state, std::move(rows));
     double sum = equations_.prior_cost(state);
     for (const double c : costs) sum += c;

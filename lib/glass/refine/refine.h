@@ -37,7 +37,7 @@ struct RefineWish {
 struct Stage {
   std::string name;
   SplineField field;
-  Glassy glass;  // absorption per cell
+  Glassy glass;                                      // absorption per cell
   double unexplained = 1, unexplained_held_out = 1;  // Measuring::unexplained: mean of the fitted views; held out
   std::string how{};                                 // the descent ended
 };

@@ -9,7 +9,9 @@ namespace gonio::glass {
 SplineField::SplineField(Vec3 low_m, double cell_m, Size nodes)
     : coefficients(static_cast<std::size_t>(nodes[0]) * static_cast<std::size_t>(nodes[1]) *
                    static_cast<std::size_t>(nodes[2])),
-      low_m_(low_m), cell_m_(cell_m), nodes_(nodes) {}
+      low_m_(low_m),
+      cell_m_(cell_m),
+      nodes_(nodes) {}
 
 void SplineField::fill(const std::function<double(Vec3)>& value_cells) {
   for (int k = 0; k < nodes_[2]; ++k)

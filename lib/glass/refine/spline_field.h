@@ -26,7 +26,8 @@ class SplineField {
   std::size_t size() const { return coefficients.size(); }
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * static_cast<std::size_t>(nodes_[1]) + static_cast<std::size_t>(j)) *
-               static_cast<std::size_t>(nodes_[0]) + static_cast<std::size_t>(i);
+               static_cast<std::size_t>(nodes_[0]) +
+           static_cast<std::size_t>(i);
   }
   // Coefficients from values at the nodes (cells): a quasi-interpolation, which smooths by a third of a cell.
   void fill(const std::function<double(Vec3 point_m)>& value_cells);

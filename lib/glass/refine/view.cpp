@@ -42,8 +42,7 @@ Plane light_plane(const io::Image& picture, const std::string& prefix) {
   if (r < 0 || g < 0 || b < 0) return {};
   const Plane red = plane_of(picture, r), green = plane_of(picture, g), blue = plane_of(picture, b);
   Plane plane(red.size());
-  for (std::size_t i = 0; i < plane.size(); ++i)
-    plane[i] = 0.2126f * red[i] + 0.7152f * green[i] + 0.0722f * blue[i];
+  for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = 0.2126f * red[i] + 0.7152f * green[i] + 0.0722f * blue[i];
   return plane;
 }
 
@@ -141,8 +140,7 @@ void add_network(View& view, const io::Image& picture, const fs::path& path, con
     std::vector<Vec3> sum(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
     for (int y = 0; y < view.height * view.reduced; ++y)
       for (int x = 0; x < view.width * view.reduced; ++x)
-        sum[view.pixel(x / view.reduced, y / view.reduced)] +=
-            normals[static_cast<std::size_t>(y * picture.width + x)];
+        sum[view.pixel(x / view.reduced, y / view.reduced)] += normals[static_cast<std::size_t>(y * picture.width + x)];
     for (Vec3& v : sum) v = norm(v) > 0.5 ? normalized(v) : Vec3{};
     (front ? answer.front : answer.back) = std::move(sum);
     (front ? answer.front_sigma_rad : answer.back_sigma_rad) =
@@ -240,15 +238,18 @@ std::vector<float> distance_from_edge(const std::vector<float>& mask, int width,
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const double here = at(x, y);
-      if (x + 1 < width && (here > 0) != (at(x + 1, y) > 0)) edge.push_back({x + here / (here - at(x + 1, y)), 1.0 * y});
-      if (y + 1 < height && (here > 0) != (at(x, y + 1) > 0)) edge.push_back({1.0 * x, y + here / (here - at(x, y + 1))});
+      if (x + 1 < width && (here > 0) != (at(x + 1, y) > 0))
+        edge.push_back({x + here / (here - at(x + 1, y)), 1.0 * y});
+      if (y + 1 < height && (here > 0) != (at(x, y + 1) > 0))
+        edge.push_back({1.0 * x, y + here / (here - at(x, y + 1))});
     }
   std::vector<float> distance(mask.size());
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       double least = static_cast<double>(width) * width + static_cast<double>(height) * height;
       for (const Vec2& p : edge) least = std::min(least, (p.x - x) * (p.x - x) + (p.y - y) * (p.y - y));
-      distance[static_cast<std::size_t>(y * width + x)] = static_cast<float>((at(x, y) > 0 ? 1 : -1) * std::sqrt(least));
+      distance[static_cast<std::size_t>(y * width + x)] =
+          static_cast<float>((at(x, y) > 0 ? 1 : -1) * std::sqrt(least));
     }
   return distance;
 }

@@ -31,7 +31,7 @@ struct View {
   camera::CameraModel camera;              // of the photograph
   Rigid<frame::World, frame::Camera> world_from_camera{};
   Mat3 world_from_camera_axes{};
-  double focal_px = 0;            // of the reduced pixels
+  double focal_px = 0;              // of the reduced pixels
   std::vector<float> outline_px{};  // distance from the mask's edge, positive inside
   std::array<std::vector<float>, 3> stokes{};
   double noise = 0;  // standard deviation of s0

@@ -25,9 +25,9 @@ class GlassRefine : public testing::Test {
   static const fs::path& folder() {
     static const ScratchFolder scratch;
     static const bool made = [] {
-      const Ended ended = run({"glass-make", "--log-level", "error", "--objects", "1", "--views", "5", "--form", "lathe",
-                               "--size", "32x32", "--noise", "100%", "--spp", "16", "--recording", "0", "--out", "set",
-                               "-o", "set.json"},
+      const Ended ended = run({"glass-make", "--log-level", "error",  "--objects", "1",       "--views", "5",
+                               "--form",     "lathe",       "--size", "32x32",     "--noise", "100%",    "--spp",
+                               "16",         "--recording", "0",      "--out",     "set",     "-o",      "set.json"},
                               scratch.path());
       EXPECT_EQ(ended.status, 0) << ended.err;
       return true;
@@ -60,7 +60,8 @@ TEST_F(GlassRefine, WritesBodyMapsAndWhatEachStageLeft) {
   const Ended ended = call({"--out", "answer", "set/object-0.json", "-o", "answer.json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   const manifest::Document answer = manifest::read_document(folder() / "answer.json");
-  for (const char* file : {"refined", "stages", "maps-view-0", "maps-view-4"}) EXPECT_TRUE(answer.files.contains(file)) << file;
+  for (const char* file : {"refined", "stages", "maps-view-0", "maps-view-4"})
+    EXPECT_TRUE(answer.files.contains(file)) << file;
   EXPECT_EQ(answer.surfaces.at("refined").model, "dielectric");
   EXPECT_TRUE(answer.surfaces.at("refined").parameters.contains("eta"));
   ASSERT_EQ(answer.comparisons.size(), 1u);
@@ -79,7 +80,8 @@ TEST_F(GlassRefine, WritesBodyMapsAndWhatEachStageLeft) {
   const Words again{"--network", "answer/maps", "--no-light", "set/object-0.json", "--hold-out", "view-2"};
   for (const char* name : {"one", "two"}) {
     Words words = again;
-    words.insert(words.end(), {"--threads", *name == 'o' ? "1" : "3", "--out", name, "-o", std::string(name) + ".json"});
+    words.insert(words.end(),
+                 {"--threads", *name == 'o' ? "1" : "3", "--out", name, "-o", std::string(name) + ".json"});
     ASSERT_EQ(call(words).status, 0);
   }
   EXPECT_EQ(read_file(folder() / "one/refined.ply"), read_file(folder() / "two/refined.ply"));
@@ -95,7 +97,8 @@ TEST_F(GlassRefine, RefusesWhatMakesNoSense) {
   expect_refused({"--out", "x", "set/object-0.json", "--network", "nowhere"}, 66, "nowhere");
   const std::string few = changed("few.json", [](manifest::Document& d) { d.images.resize(3); });
   expect_refused({"--out", "x", few}, 65, "3 views");
-  const std::string dark = changed("dark.json", [](manifest::Document& d) { d.images[1].light = {}, d.images[1].dark = true; });
+  const std::string dark =
+      changed("dark.json", [](manifest::Document& d) { d.images[1].light = {}, d.images[1].dark = true; });
   expect_refused({"--out", "x", dark}, 65, "no screen");
   const std::string many = changed("many.json", [](manifest::Document& d) { d.images[1].light = {}; });
   expect_refused({"--out", "x", many}, 65, "several screens");
@@ -104,9 +107,8 @@ TEST_F(GlassRefine, RefusesWhatMakesNoSense) {
   const std::string plain = changed("plain.json", [](manifest::Document& d) { d.images[2].file = "0-0"; });
   expect_refused({"--out", "x", plain}, 65, "images/2");
   // Poses that do not belong together leave nothing in common.
-  const std::string apart = changed("apart.json", [](manifest::Document& d) {
-    d.images[0].world_from_camera->translation_m.x += 3;
-  });
+  const std::string apart =
+      changed("apart.json", [](manifest::Document& d) { d.images[0].world_from_camera->translation_m.x += 3; });
   expect_refused({"--out", "x", apart}, 65, "nothing in common");
 }
 
