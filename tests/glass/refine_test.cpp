@@ -93,7 +93,7 @@ struct Display {
   }
 };
 
-Patch plane(Vec3 at, Vec3 outward) {
+SurfacePatch plane(Vec3 at, Vec3 outward) {
   return {at, {0, -outward, Mat3{{0, 0, 0, 0, 0, 0, 0, 0, 0}}}};
 }
 

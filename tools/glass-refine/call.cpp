@@ -56,6 +56,7 @@ double differs(const cli::Invocation& call, const View& view, const Stage& stage
   const int spp = static_cast<int>(call.integer("spp"));
   if (spp == 0) return 0;
   manifest::Document document = call.document;
+  document.allow_outside = true;  // its own files lie where the manifest does, the body below --out
   enter_body(document, stage, 0, name, mesh);
   const io::Image rendered = rendered_with_stokes(document, image, spp, call.seed, picture);
   io::write_picture(picture, rendered);

@@ -26,7 +26,7 @@ struct Normal {
 };
 
 // Of the body, with the scatter of what was drawn from the posterior.
-Normal normal_of(const Refined& refined, const Mat3& camera_from_world, const PixelRay& ray, const Patch& met) {
+Normal normal_of(const Refined& refined, const Mat3& camera_from_world, const PixelRay& ray, const SurfacePatch& met) {
   const SplineField& field = refined.best().field;
   Normal normal{camera_from_world * -normalized(met.jet.slope), 0};
   if (refined.draws.empty()) return normal;

@@ -165,7 +165,7 @@ double Measuring::normal_cost(const Asked& asked, const Measurement& m, Rows* ro
   const bool front = m.kind == Kind::front;
   Path path;
   if (!straight(asked.field, line, path)) return pseudo_huber(huber * huber).cost;
-  const Patch& met = front ? path.first : path.second;
+  const SurfacePatch& met = front ? path.first : path.second;
   const Vec3 told = view.world_from_camera_axes * (front ? view.network->front : view.network->back)[at];
   const double stated = (front ? view.network->front_sigma_rad : view.network->back_sigma_rad)[at];
   // An angle has two components. Errors that hang together over an area count as one: each pixel gets a share.

@@ -65,7 +65,7 @@ class Measuring {
 
   // The ray's two crossings; false where it has none, or (light) others.
   struct Path {
-    Patch first, second;
+    SurfacePatch first, second;
     Vec3 beyond{};  // direction of what leaves, refracted
   };
   bool straight(const SplineField& field, const PixelRay& ray, Path& path) const;

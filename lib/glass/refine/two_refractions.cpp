@@ -43,11 +43,11 @@ void add_reflection(const PixelRay& ray, Vec3 place, Vec3 outward, double index,
 
 }  // namespace
 
-Patch patch(const SplineField& field, Vec3 at) {
+SurfacePatch patch(const SplineField& field, Vec3 at) {
   return {at, field.jet(at)};
 }
 
-bool meet(const Patch& patch, Vec3 origin, Vec3 direction, Vec3& place, Vec3& outward) {
+bool meet(const SurfacePatch& patch, Vec3 origin, Vec3 direction, Vec3& place, Vec3& outward) {
   double t = dot(patch.at - origin, direction);
   const double start = t;
   Vec3 slope;
@@ -66,8 +66,9 @@ bool meet(const Patch& patch, Vec3 origin, Vec3 direction, Vec3& place, Vec3& ou
   return true;
 }
 
-SeenThrough seen_through(const PixelRay& ray, const Patch& first, const Patch& second, const Glassy& glass,
-                         const ScreenPicture& screen, const light::Emitter& emitter, double blur_px) {
+SeenThrough seen_through(const PixelRay& ray, const SurfacePatch& first, const SurfacePatch& second,
+                         const Glassy& glass, const ScreenPicture& screen, const light::Emitter& emitter,
+                         double blur_px) {
   SeenThrough seen;
   Vec3 entry, outward, exit, outward2;
   if (!meet(first, ray.origin, ray.direction, entry, outward)) return seen;
@@ -97,11 +98,11 @@ SeenThrough seen_through(const PixelRay& ray, const Patch& first, const Patch& s
   return seen;
 }
 
-PathSlopes slopes_of(const PixelRay& ray, const Patch& first, const Patch& second, const Glassy& glass,
+PathSlopes slopes_of(const PixelRay& ray, const SurfacePatch& first, const SurfacePatch& second, const Glassy& glass,
                      const ScreenPicture& screen, const light::Emitter& emitter, double blur_px) {
   PathSlopes slopes{};
   const auto at = [&](std::size_t number, double step) {
-    std::array<Patch, 2> patches{first, second};
+    std::array<SurfacePatch, 2> patches{first, second};
     Glassy g = glass;
     if (number < 8) {
       SplineField::Jet& jet = patches[number / 4].jet;
@@ -121,13 +122,13 @@ PathSlopes slopes_of(const PixelRay& ray, const Patch& first, const Patch& secon
   return slopes;
 }
 
-std::array<std::array<double, 4>, 3> normal_slopes(const Patch& patch, Vec3 origin, Vec3 direction) {
+std::array<std::array<double, 4>, 3> normal_slopes(const SurfacePatch& patch, Vec3 origin, Vec3 direction) {
   std::array<std::array<double, 4>, 3> slopes{};
   for (std::size_t n = 0; n < 4; ++n) {
     Vec3 normal[2], place;
     bool met = true;
     for (int side = 0; side < 2; ++side) {
-      Patch moved = patch;
+      SurfacePatch moved = patch;
       const double step = side == 0 ? difference : -difference;
       if (n == 0) moved.jet.value += step;
       if (n > 0) moved.jet.slope += Vec3{n == 1 ? step : 0, n == 2 ? step : 0, n == 3 ? step : 0};
