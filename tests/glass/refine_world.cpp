@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/atomic_file.h"
 #include "glass/glasses.h"
 #include "glass/make_cell.h"
+#include "glass/refine/answer.h"
 #include "glass/tensors.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/object.h"
@@ -146,6 +146,29 @@ Angles angles_of_network(const World& world, std::size_t held_out) {
     const View& view = world.views[v];
     return view.world_from_camera_axes * (front ? view.network->front : view.network->back)[view.pixel(x, y)];
   });
+}
+
+MapsJudged judge_maps(const World& world, const Refined& refined, std::size_t held_out) {
+  const Measuring measuring(world.views, {});
+  std::vector<io::Image> maps;
+  for (std::size_t v = 0; v < world.views.size(); ++v)
+    maps.push_back(v == held_out ? io::Image() : maps_of(refined, measuring, v));
+  const auto told = [&](std::size_t v, int x, int y, int c) {
+    return Vec3{maps[v].at(x, y, c), maps[v].at(x, y, c + 1), maps[v].at(x, y, c + 2)};
+  };
+  MapsJudged judged;
+  double count = 0;
+  const Angles means = angles(world, held_out, [&](std::size_t v, int x, int y, bool front) {
+    if (v == held_out || maps[v].at(x, y, 0) == 0) return Vec3{};
+    const int c = front ? 2 : 6;
+    const Vec3 truth = (front ? world.front : world.back)[v][world.views[v].pixel(x, y)];
+    const double off = degrees_between(told(v, x, y, c), truth) * pi / 180 / maps[v].at(x, y, c + 3);
+    judged.within += off < 1, judged.within_two += off<2, judged.beyond_three += off> 3, ++count;
+    return world.views[v].world_from_camera_axes * told(v, x, y, c);
+  });
+  judged.front = means.front, judged.back = means.back;
+  judged.within /= count, judged.within_two /= count, judged.beyond_three /= count;
+  return judged;
 }
 
 }  // namespace gonio::glass

@@ -43,4 +43,11 @@ Angles angles(const World& world, std::size_t held_out, const std::function<Vec3
 Angles angles_of(const World& world, const Stage& stage, std::size_t held_out);
 Angles angles_of_network(const World& world, std::size_t held_out);
 
+// Of the maps that are written (answer.h), in all views but the one held out: mean angles, and how many normals lie
+// within their stated deviation, within two, beyond three.
+struct MapsJudged {
+  double front = 0, back = 0, within = 0, within_two = 0, beyond_three = 0;
+};
+MapsJudged judge_maps(const World& world, const Refined& refined, std::size_t held_out);
+
 }  // namespace gonio::glass

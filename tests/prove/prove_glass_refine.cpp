@@ -18,7 +18,8 @@ using namespace gonio::glass;
 struct Sums {
   double network_front = 0, network_back = 0, count = 0;
   std::map<std::string, std::pair<double, double>> stages;
-  double answer_front = 0, answer_back = 0;
+  double answer_front = 0, answer_back = 0, maps_front = 0, maps_back = 0;
+  double hull_front = 0, hull_back = 0, within = 0, within_two = 0, beyond = 0;
 };
 
 void measure(const WorldWish& wish, const std::filesystem::path& folder, double front_deg, double back_deg,
@@ -30,7 +31,7 @@ void measure(const WorldWish& wish, const std::filesystem::path& folder, double 
   RefineWish refine_wish;
   refine_wish.held_out = held;
   refine_wish.hull.floor_m = 0;
-  refine_wish.draws = 0;
+  refine_wish.draws = 6;
   const Refined refined = refine(world.views, refine_wish);
   const Angles network = angles_of_network(world, held);
   std::printf("%s seed %llu object %zu (%s, index %.3f)\n  network              %5.1f %5.1f\n", wish.form.c_str(),
@@ -47,6 +48,13 @@ void measure(const WorldWish& wish, const std::filesystem::path& folder, double 
     sums.stages[stage.name].first += a.front, sums.stages[stage.name].second += a.back;
     if (s == refined.answer) sums.answer_front += a.front, sums.answer_back += a.back;
   }
+  const MapsJudged maps = judge_maps(world, refined, held);
+  std::printf(
+      "  maps                 %5.1f %5.1f  within 1, 2 deviations %.2f %.2f, beyond 3 %.3f; index %.3f +- %.3f\n",
+      maps.front, maps.back, maps.within, maps.within_two, maps.beyond_three, refined.best().glass.index,
+      refined.index_sigma);
+  sums.maps_front += maps.front, sums.maps_back += maps.back;
+  sums.within += maps.within, sums.within_two += maps.within_two, sums.beyond += maps.beyond_three;
   std::fflush(stdout);
 }
 
@@ -87,13 +95,24 @@ int main(int argc, char** argv) try {
     for (const char* stage : {"hull", "outline", "normals", "light-2"})
       std::printf("  %s %.1f %.1f", stage, sums.stages[stage].first / sums.count,
                   sums.stages[stage].second / sums.count);
-    std::printf("  answer %.1f %.1f\n", sums.answer_front / sums.count, sums.answer_back / sums.count);
+    std::printf("  answer %.1f %.1f  maps %.1f %.1f  within %.2f %.2f beyond %.3f\n", sums.answer_front / sums.count,
+                sums.answer_back / sums.count, sums.maps_front / sums.count, sums.maps_back / sums.count,
+                sums.within / sums.count, sums.within_two / sums.count, sums.beyond / sums.count);
     all.network_front += sums.network_front, all.network_back += sums.network_back, all.count += sums.count;
     all.answer_front += sums.answer_front, all.answer_back += sums.answer_back;
+    all.maps_front += sums.maps_front, all.maps_back += sums.maps_back;
+    all.within += sums.within, all.within_two += sums.within_two, all.beyond += sums.beyond;
+    all.hull_front += sums.stages["hull"].first, all.hull_back += sums.stages["hull"].second;
   }
-  std::printf("all: network %.1f %.1f  answer %.1f %.1f  factor %.2f %.2f\n", all.network_front / all.count,
-              all.network_back / all.count, all.answer_front / all.count, all.answer_back / all.count,
-              all.network_front / all.answer_front, all.network_back / all.answer_back);
+  const double n = all.count;
+  std::printf("all: network %.1f %.1f  hull %.1f %.1f  body %.1f %.1f  maps %.1f %.1f  within %.2f %.2f beyond %.3f\n",
+              all.network_front / n, all.network_back / n, all.hull_front / n, all.hull_back / n, all.answer_front / n,
+              all.answer_back / n, all.maps_front / n, all.maps_back / n, all.within / n, all.within_two / n,
+              all.beyond / n);
+  std::printf("glass-refine front, factor by which it is better than the network: measured %.2f\n",
+              all.network_front / all.maps_front);
+  std::printf("glass-refine back, factor by which it is better than the network: measured %.2f\n",
+              all.network_back / all.maps_back);
 } catch (const gonio::Error& error) {
   std::fprintf(stderr, "prove-glass-refine: %s\n", error.what());
   return static_cast<int>(error.code());

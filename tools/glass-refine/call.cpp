@@ -69,7 +69,7 @@ std::string table_of(const Refined& refined, double index_sigma) {
     const Stage& stage = refined.stages[s];
     const bool answer = s == refined.answer;
     text += format("%s,%.5f,%.5f,%.5f,%s,%.4f,%d\n", stage.name.c_str(), stage.unexplained, stage.unexplained_held_out,
-                   stage.glass.index, answer ? format("%.5f", index_sigma).c_str() : "",
+                   stage.glass.index, answer && index_sigma > 0 ? format("%.5f", index_sigma).c_str() : "",
                    stage.glass.absorption / stage.field.cell_m(), answer ? 1 : 0);
   }
   return text;

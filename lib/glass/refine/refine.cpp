@@ -10,6 +10,9 @@ namespace gonio::glass {
 namespace {
 
 constexpr double light_blurs_px[] = {16, 8, 4, 2};
+// What the index errs by because of light that two refractions leave unexplained, per share of it: from the development
+// seeds of tests/prove/prove_glass_refine.cpp.
+constexpr double index_model = 0.15;
 
 // The descent of one stage: coefficients and globals (index, absorption per cell) as one column.
 class Descending final : public optim::Descent {
@@ -93,13 +96,19 @@ class Refinement {
       const auto floor = measuring_.floor(refined_.stages.front().field, *wish_.hull.floor_m);
       told.insert(told.end(), floor.begin(), floor.end());
     }
-    descend("outline", told, 1, 6, normals.empty());
+    descend("outline", told, 1, 6);
     if (!normals.empty()) {
       told.insert(told.end(), normals.begin(), normals.end());
-      descend("normals", told, 1, 8, true);
+      descend("normals", told, 1, 8);
     }
     refined_.answer = refined_.stages.size() - 1;
-    if (wish_.light) through_light(told);
+    std::vector<Measurement> all = told;
+    if (wish_.light) {
+      const std::vector<Measurement> lights = each(&Measuring::lights);
+      all.insert(all.end(), lights.begin(), lights.end());
+    }
+    const bool by_light = wish_.light && through_light(all);
+    draw(by_light ? all : told, by_light);
     return std::move(refined_);
   }
 
@@ -131,42 +140,40 @@ class Refinement {
     stage.unexplained /= count;
     refined_.stages.push_back(std::move(stage));
   }
-  void descend(const std::string& name, const std::vector<Measurement>& measurements, double blur_px, int steps,
-               bool draws) {
+  void descend(const std::string& name, const std::vector<Measurement>& measurements, double blur_px, int steps) {
     const Stage& from = refined_.stages.back();
     Descending descending(measuring_, measurements, from.field, from.glass, blur_px, prior(from.field.cell_m()));
     optim::Limits limits;
     limits.most_steps = steps, limits.most_refusals = 10, limits.first_damping = 1e-3;
     limits.small_fall = {3e-4, 0};
     const optim::Descended ended = optim::descend(descending, descending.cost(), limits);
-    if (draws) {
-      descending.linearise();
-      draw(descending);
-    }
     add(name, descending.field(), descending.glass(), optim::sentence(ended));
   }
-  void draw(const Descending& descending) {
-    refined_.draws.clear();
-    Random random(wish_.seed, 17);
-    for (int k = 0; k < wish_.draws; ++k) refined_.draws.push_back(descending.equations().draw(random));
-  }
-  void through_light(const std::vector<Measurement>& told) {
-    const auto kept = refined_.draws;
-    std::vector<Measurement> all = told, lights = each(&Measuring::lights);
-    all.insert(all.end(), lights.begin(), lights.end());
-    for (const double blur_px : light_blurs_px)
-      descend(format_blur(blur_px), all, blur_px, 6, blur_px == std::end(light_blurs_px)[-1]);
+  // The light's stages, and whether the last of them is the answer.
+  bool through_light(const std::vector<Measurement>& measurements) {
+    for (const double blur_px : light_blurs_px) descend(format_blur(blur_px), measurements, blur_px, 6);
     const Stage &before = refined_.stages[refined_.answer], &after = refined_.stages.back();
     const double was = wish_.held_out ? before.unexplained_held_out : before.unexplained;
     const double is = wish_.held_out ? after.unexplained_held_out : after.unexplained;
-    if (is < was - wish_.least_gain) {
-      refined_.answer = refined_.stages.size() - 1;
-      double sum = 0;
-      for (const auto& change : refined_.draws) sum += change[change.size() - 2] * change[change.size() - 2];
-      refined_.index_sigma = wish_.draws > 0 ? std::sqrt(sum / wish_.draws) : 0;
-    } else {
-      refined_.draws = kept;
+    if (!(is < was - wish_.least_gain)) return false;
+    refined_.answer = refined_.stages.size() - 1;
+    return true;
+  }
+  void draw(const std::vector<Measurement>& measurements, bool by_light) {
+    if (wish_.draws == 0) return;
+    const Stage& best = refined_.best();
+    Descending there(measuring_, measurements, best.field, best.glass, std::end(light_blurs_px)[-1],
+                     prior(best.field.cell_m()));
+    there.linearise();
+    Random random(wish_.seed, 17);
+    double sum = 0;
+    for (int k = 0; k < wish_.draws; ++k) {
+      refined_.draws.push_back(there.equations().draw(random));
+      const double index = refined_.draws.back()[best.field.size()];
+      sum += index * index;
     }
+    const double left_out = index_model * best.unexplained;
+    if (by_light) refined_.index_sigma = std::sqrt(sum / wish_.draws + left_out * left_out);
   }
   static std::string format_blur(double blur_px) { return "light-" + std::to_string(static_cast<int>(blur_px)); }
 
