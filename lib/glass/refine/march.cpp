@@ -64,7 +64,7 @@ Passage passage(const SplineField& field, Vec3 origin, Vec3 direction, double fr
   double t = low, f = field.value(origin + direction * t);
   all.greatest = f, all.at = t;
   while (t < high) {
-    const double next = std::min(high, t + std::clamp(0.6 * std::abs(f), 0.25, 1.5));
+    const double next = std::min(high, t + std::clamp(0.6 * std::abs(f), 0.25, 3.0));
     const double g = field.value(origin + direction * next);
     if ((f > 0) != (g > 0)) all.crossings.push_back({zero(field, origin, direction, t, f, next, g), g > 0});
     if (g > all.greatest) all.greatest = g, all.at = next;

@@ -13,7 +13,7 @@ constexpr double leaving = 0.05;                        // cells from a surface,
 constexpr double huber = 3;                             // widths of the robust costs, standard deviations
 constexpr double bounded = 9;                           // square of the width of the light's
 constexpr double floor_depth = 0.5, floor_sigma = 0.2;  // cells
-constexpr double band_px = 1.5, slack_px = 1, reach_px = 5;
+constexpr double band_px = 1.5, slack_px = 1, reach_px = 3.5;
 
 struct Robust {
   double cost, weight;

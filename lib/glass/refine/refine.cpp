@@ -10,6 +10,7 @@ namespace gonio::glass {
 namespace {
 
 constexpr double light_blurs_px[] = {16, 8, 4, 2};
+constexpr double odd_index = 2.2;  // deviations from what was expected
 // What the index errs by because of light that two refractions leave unexplained, per share of it: from the development
 // seeds of tests/prove/prove_glass_refine.cpp.
 constexpr double index_model = 0.15;
@@ -156,6 +157,8 @@ class Refinement {
     const double was = wish_.held_out ? before.unexplained_held_out : before.unexplained;
     const double is = wish_.held_out ? after.unexplained_held_out : after.unexplained;
     if (!(is < was - wish_.least_gain)) return false;
+    // A hollow body bends light as a full one of a lower index would: one that no glass has.
+    if (std::abs(after.glass.index - wish_.index) > odd_index * wish_.index_sigma) return false;
     refined_.answer = refined_.stages.size() - 1;
     return true;
   }

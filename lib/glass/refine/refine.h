@@ -8,7 +8,8 @@
 //            Coarse to fine: the screen's picture is blurred less from step to step.
 //
 // One view is kept out of everything. The last stage is kept only if it explains that view's photograph better than the
-// stage before; hollow bodies, which two refractions cannot explain, so keep what outlines and network say.
+// stage before, by an index that can be expected; hollow bodies, which two refractions cannot explain, so keep what
+// outlines and network say.
 #pragma once
 #include <optional>
 #include <span>
