@@ -156,8 +156,8 @@ class OneView : public testing::Test {
     view.screen = display_.picture;
     view.emitter = std::shared_ptr<const light::Emitter>(display_.emitter.get(), [](const light::Emitter*) {});
     NetworkAnswer answer;
-    answer.front.assign(n * n, normalized(Vec3{0.2, 0.1, -1}));
-    answer.back.assign(n * n, normalized(Vec3{0.2, 0.3, 1}));
+    answer.front.assign(n * n, normalized(Vec3{0.2, -1, -0.1}));
+    answer.back.assign(n * n, normalized(Vec3{0.2, 1, -0.3}));
     answer.front_sigma_rad.assign(n * n, 0.3f), answer.back_sigma_rad.assign(n * n, 0.4f);
     view.network = std::move(answer);
     views_.push_back(std::move(view));

@@ -90,11 +90,12 @@ void add_stand_in(World& world, double front_deg, double back_deg, double reach_
       for (std::size_t i = 0; i < normals.size(); ++i) {
         // Two of three components turn the normal.
         const Vec3 by = Vec3{turn[0][i], turn[1][i], turn[2][i]} * (sigma / std::sqrt(2.0));
-        if (norm(normals[i]) > 0.5) normals[i] = matrix_of(quaternion_of_rotation_vector(by)) * normals[i];
+        if (norm(normals[i]) > 0.5)
+          normals[i] = view.world_from_camera_axes * (matrix_of(quaternion_of_rotation_vector(by)) * normals[i]);
       }
       (front ? answer.front : answer.back) = std::move(normals);
       (front ? answer.front_sigma_rad : answer.back_sigma_rad)
-          .assign(view.outline_px.size(), static_cast<float>(sigma));
+          .assign(view.outline_px.size(), static_cast<float>(1.072 * sigma));  // 68.3 % of such angles
     }
     view.network = std::move(answer);
   }
@@ -144,7 +145,7 @@ Angles angles_of(const World& world, const Stage& stage, std::size_t held_out) {
 Angles angles_of_network(const World& world, std::size_t held_out) {
   return angles(world, held_out, [&](std::size_t v, int x, int y, bool front) {
     const View& view = world.views[v];
-    return view.world_from_camera_axes * (front ? view.network->front : view.network->back)[view.pixel(x, y)];
+    return (front ? view.network->front : view.network->back)[view.pixel(x, y)];
   });
 }
 
@@ -161,10 +162,11 @@ MapsJudged judge_maps(const World& world, const Refined& refined, std::size_t he
   const Angles means = angles(world, held_out, [&](std::size_t v, int x, int y, bool front) {
     if (v == held_out || maps[v].at(x, y, 0) == 0) return Vec3{};
     const int c = front ? 2 : 6;
-    const Vec3 truth = (front ? world.front : world.back)[v][world.views[v].pixel(x, y)];
+    const View& view = world.views[v];
+    const Vec3 truth = view.world_from_camera_axes * (front ? world.front : world.back)[v][view.pixel(x, y)];
     const double off = degrees_between(told(v, x, y, c), truth) * pi / 180 / maps[v].at(x, y, c + 3);
     judged.within += off < 1, judged.within_two += off<2, judged.beyond_three += off> 3, ++count;
-    return world.views[v].world_from_camera_axes * told(v, x, y, c);
+    return told(v, x, y, c);
   });
   judged.front = means.front, judged.back = means.back;
   judged.within /= count, judged.within_two /= count, judged.beyond_three /= count;

@@ -105,8 +105,7 @@ std::vector<cli::Option> options() {
   return {
       {.name = "network",
        .type = Type::folder,
-       .help = "Answers of a network, IMAGE.exr for each image: layers mask, front.X to .Z, back.X to .Z, front.sigma, "
-               "back.sigma."},
+       .help = "Answers of a network, IMAGE.exr for each image, as glass-net(1) writes them."},
       {.name = "hold-out",
        .type = Type::text,
        .help = "The image that is kept out of the fit, to judge it; left out: the last.",

@@ -20,7 +20,7 @@ const cli::Program& gonio_program() {
       .sections_written = {"files", "meshes", "surfaces", "objects", "comparisons"},
       .files = {{"refined.ply", "the body, closed, with normals"},
                 {"hull.ply", "where the refinement began: the visual hull"},
-                {"maps/IMAGE.exr", "of each view: mask, depth.Z, front and back normals with deviations, thickness"},
+                {"maps/IMAGE.exr", "of each view: glass-net(1)'s layers, as the body has them, and the thickness, m"},
                 {"held-out-hull.exr, held-out-refined.exr",
                  "the view that was kept out, rendered with either body and render(1)'s Stokes planes"},
                 {"stages.csv", "what each stage left unexplained, index, and which is the answer"}},
@@ -29,7 +29,8 @@ const cli::Program& gonio_program() {
                      "Doest, James, Del Bue & Frisvad, Reconstructing transparent glass objects using polarized light, "
                      "2021.",
                      "Papandreou & Yuille, Gaussian sampling by local perturbations, NIPS 2010."},
-      .see_also = {"glass-make(1)", "render(1)", "explain(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
+      .see_also = {"glass-make(1)", "glass-net(1)", "render(1)", "explain(1)", "gonio-manifest(5)",
+                   "gonio-conventions(7)"},
       .check = check,
       .run = run};
   return program;

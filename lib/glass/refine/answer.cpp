@@ -18,17 +18,17 @@ namespace {
 constexpr std::size_t most_faces = 60000;
 // What a posterior of smooth bodies leaves out: edges that the prior rounds off, outlines that pixels cannot place.
 // From the development seeds of tests/prove/prove_glass_refine.cpp.
-constexpr double inflation = 2, least_sigma_rad = 0.05;
+constexpr double inflation = 1.5, least_sigma_rad = 0.05;
 
 struct Normal {
-  Vec3 direction;  // camera's frame
+  Vec3 direction;  // world
   double sigma_rad = 0;
 };
 
 // Of the body, with the scatter of what was drawn from the posterior.
-Normal normal_of(const Refined& refined, const Mat3& camera_from_world, const PixelRay& ray, const SurfacePatch& met) {
+Normal normal_of(const Refined& refined, const PixelRay& ray, const SurfacePatch& met) {
   const SplineField& field = refined.best().field;
-  Normal normal{camera_from_world * -normalized(met.jet.slope), 0};
+  Normal normal{-normalized(met.jet.slope), 0};
   if (refined.draws.empty()) return normal;
   const auto slopes = normal_slopes(met, ray.origin, ray.direction);
   const SplineField::Support at = field.support(met.at);
@@ -83,16 +83,16 @@ io::Image maps_of(const Refined& refined, const Measuring& measuring, std::size_
   const View& view = measuring.view(number);
   const SplineField& field = refined.best().field;
   io::Image maps(view.width, view.height,
-                 {"mask", "depth.Z", "front.X", "front.Y", "front.Z", "front.sigma", "back.X", "back.Y", "back.Z",
-                  "back.sigma", "thickness"});
+                 {"mask", "depth.Z", "normal.X", "normal.Y", "normal.Z", "uncertainty.normal", "back_normal.X",
+                  "back_normal.Y", "back_normal.Z", "uncertainty.back_normal", "thickness"});
   const Mat3 camera_from_world = transposed(view.world_from_camera_axes);
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) {
       const PixelRay ray = measuring.ray(field, number, x, y);
       Measuring::Path path;
       if (!measuring.straight(field, ray, path)) continue;
-      Normal front = normal_of(refined, camera_from_world, ray, path.first);
-      Normal back = normal_of(refined, camera_from_world, ray, path.second);
+      Normal front = normal_of(refined, ray, path.first);
+      Normal back = normal_of(refined, ray, path.second);
       believe_network(view, view.pixel(x, y), true, front);
       believe_network(view, view.pixel(x, y), false, back);
       maps.at(x, y, 0) = 1;

@@ -10,9 +10,10 @@ namespace gonio::glass {
 // Closed, with the body's normals; metres, world.
 io::TriangleMesh mesh_of(const SplineField& field);
 
-// Of the view's (reduced) pixels, 0 where the body is missed: mask; depth.Z (m, along the camera's axis); front.X, .Y,
-// .Z and back.X, .Y, .Z (unit, the camera's frame); front.sigma, back.sigma (rad: root of the mean square angle);
-// thickness (m of glass along the straight ray, first to last surface).
+// Of the view's (reduced) pixels, 0 where the body is missed, with the names that glass-net(1) has: mask; depth.Z (m,
+// along the camera's axis); normal.X, .Y, .Z of the front and back_normal.X, .Y, .Z (unit, the world's frame);
+// uncertainty.normal, uncertainty.back_normal (rad, that 68.3 % err by less than); thickness (m of glass along the
+// straight ray, first to last surface).
 //
 // Where the body and a network contradict each other by more than `contradiction` of the network's deviations, the
 // body cannot be as the network saw it, be it the mouth of a vessel or a bore that no outline shows: there the

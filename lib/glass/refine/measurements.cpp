@@ -9,9 +9,10 @@
 namespace gonio::glass {
 namespace {
 
-constexpr double leaving = 0.05;                        // cells from a surface, before it can be met again
-constexpr double huber = 3;                             // widths of the robust costs, standard deviations
-constexpr double bounded = 9;                           // square of the width of the light's
+constexpr double leaving = 0.05;         // cells from a surface, before it can be met again
+constexpr double level_of_two = 1.5158;  // of an angle of two Gaussian components 68.3 % lie within so many deviations
+constexpr double huber = 3;              // widths of the robust costs, standard deviations
+constexpr double bounded = 9;            // square of the width of the light's
 constexpr double floor_depth = 0.5, floor_sigma = 0.2;  // cells
 constexpr double band_px = 1.5, slack_px = 1, reach_px = 3.5;
 
@@ -166,11 +167,10 @@ double Measuring::normal_cost(const Asked& asked, const Measurement& m, Rows* ro
   Path path;
   if (!straight(asked.field, line, path)) return pseudo_huber(huber * huber).cost;
   const SurfacePatch& met = front ? path.first : path.second;
-  const Vec3 told = view.world_from_camera_axes * (front ? view.network->front : view.network->back)[at];
+  const Vec3 told = (front ? view.network->front : view.network->back)[at];
   const double stated = (front ? view.network->front_sigma_rad : view.network->back_sigma_rad)[at];
   // An angle has two components. Errors that hang together over an area count as one: each pixel gets a share.
-  const double sigma =
-      std::max(stated, 0.02) / std::sqrt(2.0) * std::max(1.0, sigmas_.normals_px / sigmas_.normals_step);
+  const double sigma = std::max(stated, 0.02) / level_of_two * std::max(1.0, sigmas_.normals_px / sigmas_.normals_step);
   const Vec3 off = (-normalized(met.jet.slope) - told) / sigma;
   const Robust robust = pseudo_huber(dot(off, off));
   if (rows == nullptr) return robust.cost;

@@ -107,7 +107,7 @@ std::vector<Vec3> vectors_of(const io::Image& picture, const std::string& layer,
   std::array<int, 3> channel{picture.channel(layer + ".X"), picture.channel(layer + ".Y"),
                              picture.channel(layer + ".Z")};
   if (channel[0] < 0 || channel[1] < 0 || channel[2] < 0)
-    throw Error(Exit::data, path.string(), "has no layer " + layer, "glass-net writes mask, front and back");
+    throw Error(Exit::data, path.string(), "has no layer " + layer, "give what glass-net(1) writes");
   std::vector<Vec3> all(picture.pixels());
   const std::size_t step = picture.channels.size();
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -133,9 +133,9 @@ void add_network(View& view, const io::Image& picture, const fs::path& path, con
     refuse(document, image, "has another size than the network's answer " + path.string(), "predict it anew");
   NetworkAnswer answer;
   for (const bool front : {true, false}) {
-    const std::string layer = front ? "front" : "back";
+    const std::string layer = front ? "normal" : "back_normal";
     const std::vector<Vec3> normals = vectors_of(picture, layer, path);
-    const int c = picture.channel(layer + ".sigma");
+    const int c = picture.channel("uncertainty." + layer);
     const Plane sigma = c < 0 ? Plane(picture.pixels(), 0.5f) : plane_of(picture, c);
     std::vector<Vec3> sum(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
     for (int y = 0; y < view.height * view.reduced; ++y)

@@ -18,8 +18,9 @@
 
 namespace gonio::glass {
 
-// What a network says of a view's pixels, in the camera's frame. Layers of its EXR: mask (0 to 1), front.X, .Y, .Z,
-// back.X, .Y, .Z (unit, the camera's frame), front.sigma, back.sigma (rad, of the angle). Sizes are the view's.
+// What a network says of a view's pixels: unit normals in the world's frame, and the angles that 68.3 % of them err by
+// less than. Layers of its EXR, as glass-net(1) writes them for images with a pose: mask (0 to 1), normal.X, .Y, .Z and
+// back_normal.X, .Y, .Z, uncertainty.normal and uncertainty.back_normal (rad). Sizes are the view's.
 struct NetworkAnswer {
   std::vector<Vec3> front, back;  // zero vector: says nothing
   std::vector<float> front_sigma_rad, back_sigma_rad;

@@ -68,7 +68,8 @@ TEST_F(GlassRefine, WritesBodyMapsAndWhatEachStageLeft) {
   EXPECT_EQ(answer.comparisons[0].image, "view-4");
   const io::Image maps = io::read_picture(folder() / "answer/maps/view-0.exr");
   EXPECT_EQ(maps.width, 32);
-  for (const char* layer : {"mask", "depth.Z", "front.X", "front.sigma", "back.Z", "back.sigma", "thickness"})
+  for (const char* layer :
+       {"mask", "depth.Z", "normal.X", "uncertainty.normal", "back_normal.Z", "uncertainty.back_normal", "thickness"})
     EXPECT_GE(maps.channel(layer), 0) << layer;
   EXPECT_GT(io::read_ply(folder() / "answer/refined.ply").triangles.size(), 100u);
   EXPECT_EQ(io::read_picture(folder() / "answer/held-out-refined.exr").width, 32);
