@@ -1,5 +1,5 @@
 # fish completion of glass-refine; printed by scripts/regenerate
-complete -c glass-refine -l network -r -d 'Answers of a network, IMAGE.exr for each image: layers mask, front.X to .Z, back.X to .Z, front.sigma, back.sigma.'
+complete -c glass-refine -l network -r -d 'Answers of a network, IMAGE.exr for each image, as glass-net(1) writes them.'
 complete -c glass-refine -l hold-out -x -d 'The image that is kept out of the fit, to judge it; left out: the last.'
 complete -c glass-refine -l stands-on -x -d 'The object stands on the plane z = this of the world.'
 complete -c glass-refine -l cells -x -d 'Of the grid, along the objects longest side.'
