@@ -1,6 +1,8 @@
 // See call.h.
 #include "tools/glass-refine/call.h"
 
+#include <algorithm>
+
 #include "base/atomic_file.h"
 #include "base/progress.h"
 #include "base/text.h"
@@ -30,8 +32,9 @@ std::size_t held_out(const cli::Invocation& call) {
   return *image;
 }
 
-ViewFiles files_of(const cli::Invocation& call) {
+ViewFiles files_of(cli::Invocation& call) {
   ViewFiles files;
+  files.on_file = [&](const fs::path& path) { call.note_input(path); };
   if (call.given("network")) files.network = call.text("network");
   files.most_px = static_cast<int>(call.integer("pixels"));
   return files;
@@ -153,6 +156,14 @@ std::vector<cli::Option> options() {
 void check(cli::Invocation& call) {
   if (call.out.empty()) throw Error(Exit::usage, "--out", "is missing", "name the folder of the answer");
   held_out(call);
+  if (call.given("network")) {
+    const fs::path folder = call.text("network");
+    if (!fs::is_directory(folder)) throw Error(Exit::no_input, folder.string(), "is no folder");
+    const std::vector<std::string> images = manifest::names_in(call.document, "images");
+    if (std::ranges::none_of(images, [&](const std::string& id) { return fs::exists(folder / (id + ".exr")); }))
+      throw Error(Exit::no_input, folder.string(), "holds no IMAGE.exr of an image of the manifest",
+                  "glass-net -i MANIFEST writes them");
+  }
   if (call.document.images.size() < 4)
     throw Error(Exit::data, manifest::place(call.document, "/images"),
                 format("are %zu views", call.document.images.size()),
@@ -161,13 +172,7 @@ void check(cli::Invocation& call) {
 
 Exit run(cli::Invocation& call) {
   const RefineWish wish = wish_of(call);
-  for (std::size_t i = 0; i < call.document.images.size(); ++i)
-    for (const fs::path& path : manifest::files_of_image(call.document, i)) call.note_input(path);
-  const ViewFiles files = files_of(call);
-  const std::vector<View> views = views_in(call.document, files);
-  if (files.network)
-    for (const View& view : views)
-      if (view.network) call.note_input(*files.network / (view.id + ".exr"));
+  const std::vector<View> views = views_in(call.document, files_of(call));
   const Refined refined = refine(views, wish);
   const Measuring measuring(views, wish.sigmas);
   const std::size_t image = *wish.held_out;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "glass/net/seen.h"
 #include "io/picture.h"
 #include "light/aimed.h"
 #include "manifest/document.h"
@@ -14,7 +15,6 @@
 #include "manifest/sections/mesh.h"
 #include "manifest/sections/object.h"
 #include "manifest/sections/surface.h"
-#include "photograph/polarizers.h"
 #include "scene/scene.h"
 
 namespace gonio::glass {
@@ -53,24 +53,20 @@ std::array<Plane, 3> stokes_of(const io::Image& picture, bool behind_polarizers,
   if (!behind_polarizers || stokes[0].empty())
     refuse(document, image, "has neither Stokes planes s1, s2 nor a camera with \"mosaic\": \"polarizers\"",
            "photograph it with a polarization camera, or render it with --stokes");
-  const std::vector<float> variance(picture.pixels(), 1);
-  const std::vector<std::uint8_t> trusted(picture.pixels(), 1);
-  photograph::MosaicSamples samples;
-  samples.width = picture.width, samples.height = picture.height;
-  samples.value = stokes[0], samples.variance = variance, samples.trusted = trusted;
-  const io::Image found = photograph::stokes_of_polarizers(samples, photograph::Demosaicing::gradient).colour;
-  for (int k = 0; k < 3; ++k) stokes[static_cast<std::size_t>(k)] = plane_of(found, k);
+  demand_mosaic(picture, manifest::place(document, "/images/" + std::to_string(image)));
+  const Planes found = stokes_of_mosaic(picture);
+  for (std::size_t k = 0; k < 3; ++k) stokes[k].assign(found.plane(k), found.plane(k) + found.pixels());
   return stokes;
 }
 
 // The scene behind the document. One without objects has none that a renderer could build: it gets a speck.
-scene::Scene scene_of(manifest::Document document) {
+scene::Scene scene_of(manifest::Document document, const ViewFiles& files) {
   if (document.objects.empty()) {
     document.meshes["speck"].sphere_radius_m = 1e-9;
     document.surfaces["speck"].model = "diffuse";
     document.objects.push_back({.id = "speck", .mesh = "speck", .surface = "speck", .world_from_object = {}});
   }
-  return scene::build_scene(document);
+  return scene::build_scene(document, {.on_file = files.on_file});
 }
 
 void add_screen(View& view, const scene::Scene& scene, std::size_t number, const manifest::Document& document) {
@@ -173,7 +169,11 @@ View view_of(const manifest::Document& document, std::size_t image, const scene:
   view.world_from_camera = scene.views[image].world_from_camera;
   view.world_from_camera_axes = matrix_of(view.world_from_camera.rotation);
   if (view.camera.orthographic()) refuse(document, image, "is orthographic", "give the camera's centre");
-  const io::Image picture = io::read_picture(manifest::picture_path(document, image));
+  const auto read = [&](const fs::path& path) {
+    if (files.on_file) files.on_file(path);
+    return io::read_picture(path);
+  };
+  const io::Image picture = read(manifest::picture_path(document, image));
   const int width = picture.width, height = picture.height;
   if (width != view.camera.width_px() || height != view.camera.height_px())
     refuse(document, image, "has another size than its camera", "calibrate at this size");
@@ -188,7 +188,9 @@ View view_of(const manifest::Document& document, std::size_t image, const scene:
   view.noise = entry.noise ? std::sqrt(bright / entry.noise->gain + entry.noise->read * entry.noise->read) : 0;
   std::optional<io::Image> network;
   if (files.network && fs::exists(*files.network / (entry.id + ".exr")))
-    network = io::read_picture(*files.network / (entry.id + ".exr"));
+    network = read(*files.network / (entry.id + ".exr"));
+  const fs::path mask_path = manifest::mask_path(document, image);
+  if (files.on_file && !mask_path.empty()) files.on_file(mask_path);
   const Plane mask = read_mask(document, image, network, width, height);
   view.outline_px = distance_from_edge(reduced(mask, width, height, view.reduced), view.width, view.height);
   if (network) add_network(view, *network, *files.network / (entry.id + ".exr"), document, image);
@@ -255,7 +257,7 @@ std::vector<float> distance_from_edge(const std::vector<float>& mask, int width,
 }
 
 std::vector<View> views_in(const manifest::Document& document, const ViewFiles& files) {
-  const scene::Scene scene = scene_of(document);
+  const scene::Scene scene = scene_of(document, files);
   const auto others = std::make_shared<render::RayCaster>(scene.instances);
   std::vector<View> views;
   for (std::size_t image = 0; image < document.images.size(); ++image) {

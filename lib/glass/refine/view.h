@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,6 +64,7 @@ std::vector<float> reduced(const std::vector<float>& plane, int width, int heigh
 struct ViewFiles {
   std::optional<std::filesystem::path> network;  // folder with IMAGE.exr for images that a network has seen
   int most_px = 160;                             // of a side, after reduction
+  std::function<void(const std::filesystem::path&)> on_file{};  // hears of every file that is read
 };
 // All images of the document: a camera with its pose, one light of model "screen", a mask (the image's or the
 // network's), a photograph behind the mosaic of polarizers or with Stokes planes. Error(data) at the image otherwise.

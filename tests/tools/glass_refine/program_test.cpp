@@ -7,6 +7,7 @@
 #include "io/picture.h"
 #include "io/ply.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
 #include "manifest/sections/comparison.h"
 #include "manifest/sections/file.h"
 #include "manifest/sections/image.h"
@@ -36,7 +37,7 @@ class GlassRefine : public testing::Test {
     return path;
   }
   static Ended call(const Words& more) {
-    Words words{"glass-refine", "--log-level", "error", "--cells", "12", "--spp", "4", "--stands-on", "0mm"};
+    Words words{"glass-refine", "--log-level", "error", "--cells", "10", "--spp", "4", "--stands-on", "0mm"};
     words.insert(words.end(), more.begin(), more.end());
     return run(words, folder());
   }
@@ -96,6 +97,7 @@ TEST_F(GlassRefine, RefusesWhatMakesNoSense) {
   expect_refused({"--out", "x", "set/object-0.json", "--hold-out", "view-9"}, 64, "view-9");
   expect_refused({"--out", "x", "set/object-0.json", "--index", "1"}, 64, "--index");
   expect_refused({"--out", "x", "set/object-0.json", "--network", "nowhere"}, 66, "nowhere");
+  expect_refused({"--out", "x", "set/object-0.json", "--network", "set"}, 66, "IMAGE.exr");
   const std::string few = changed("few.json", [](manifest::Document& d) { d.images.resize(3); });
   expect_refused({"--out", "x", few}, 65, "3 views");
   const std::string dark =
@@ -105,8 +107,9 @@ TEST_F(GlassRefine, RefusesWhatMakesNoSense) {
   expect_refused({"--out", "x", many}, 65, "several screens");
   const std::string bare = changed("bare.json", [](manifest::Document& d) { d.images[2].mask = ""; });
   expect_refused({"--out", "x", bare}, 65, "no mask");
-  const std::string plain = changed("plain.json", [](manifest::Document& d) { d.images[2].file = "0-0"; });
-  expect_refused({"--out", "x", plain}, 65, "images/2");
+  const std::string unfiltered =
+      changed("unfiltered.json", [](manifest::Document& d) { d.cameras.at("view-2").mosaic = ""; });
+  expect_refused({"--out", "x", unfiltered}, 65, "Stokes planes");
   // Poses that do not belong together leave nothing in common.
   const std::string apart =
       changed("apart.json", [](manifest::Document& d) { d.images[0].world_from_camera->translation_m.x += 3; });
