@@ -58,6 +58,13 @@ void measure(const WorldWish& wish, const std::filesystem::path& folder, double 
   std::fflush(stdout);
 }
 
+bool claim(const char* what, double measured, double low, double high) {
+  const bool met = measured >= low && measured <= high;
+  std::printf("glass-refine %s: measured %.3g required %.3g to %.3g%s\n", what, measured, low, high,
+              met ? "" : "  NOT MET");
+  return met;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -109,10 +116,12 @@ int main(int argc, char** argv) try {
               all.network_front / n, all.network_back / n, all.hull_front / n, all.hull_back / n, all.answer_front / n,
               all.answer_back / n, all.maps_front / n, all.maps_back / n, all.within / n, all.within_two / n,
               all.beyond / n);
-  std::printf("glass-refine front, factor by which it is better than the network: measured %.2f\n",
-              all.network_front / all.maps_front);
-  std::printf("glass-refine back, factor by which it is better than the network: measured %.2f\n",
-              all.network_back / all.maps_back);
+  // Another data set, another task: glass normals by polarization err by 16.7 degrees in the mean (Doest et al. 2021).
+  bool met = claim("front, times better than the network", all.network_front / all.maps_front, 2.5, 100);
+  met &= claim("back, times better than the network", all.network_back / all.maps_back, 3, 100);
+  met &= claim("share within the stated uncertainty of 68.3 %", all.within / n, 0.55, 0.92);
+  met &= claim("share beyond three of them", all.beyond / n, 0, 0.06);
+  return met ? 0 : 1;
 } catch (const gonio::Error& error) {
   std::fprintf(stderr, "prove-glass-refine: %s\n", error.what());
   return static_cast<int>(error.code());

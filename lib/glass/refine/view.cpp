@@ -145,7 +145,7 @@ void add_network(View& view, const io::Image& picture, const fs::path& path, con
   view.network = std::move(answer);
 }
 
-Plane read_mask(const manifest::Document& document, std::size_t image, const std::optional<io::Image>& network,
+Plane outline_mask(const manifest::Document& document, std::size_t image, const std::optional<io::Image>& network,
                 int width, int height) {
   const fs::path path = manifest::mask_path(document, image);
   Plane mask;
@@ -191,7 +191,7 @@ View view_of(const manifest::Document& document, std::size_t image, const scene:
     network = read(*files.network / (entry.id + ".exr"));
   const fs::path mask_path = manifest::mask_path(document, image);
   if (files.on_file && !mask_path.empty()) files.on_file(mask_path);
-  const Plane mask = read_mask(document, image, network, width, height);
+  const Plane mask = outline_mask(document, image, network, width, height);
   view.outline_px = distance_from_edge(reduced(mask, width, height, view.reduced), view.width, view.height);
   if (network) add_network(view, *network, *files.network / (entry.id + ".exr"), document, image);
   return view;
