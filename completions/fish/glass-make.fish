@@ -9,6 +9,7 @@ complete -c glass-make -l noise -x -d 'Render each picture until its relative er
 complete -c glass-make -l spp -x -d 'Most samples per pixel, whatever the noise.'
 complete -c glass-make -l shard -x -d 'Make the I-th of N parts of the cells, and gather nothing.'
 complete -c glass-make -l cell -x -d 'Make this cell, counted from 0, and gather nothing.'
+complete -c glass-make -l recording -x -d 'Write the views of this object, counted from 0, as one recording without the object: object-NUMBER.json.'
 complete -c glass-make -l gather -d 'Make no cell: put finished ones together.'
 complete -c glass-make -l input -s i -r -d 'Manifest to read; - is standard input.'
 complete -c glass-make -l output -s o -r -d 'Where the manifest goes instead of standard output; written whole or not at all.'

@@ -6,11 +6,11 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "glass/net/seen.h"
 #include "io/picture.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/object.h"
-#include "photograph/polarizers.h"
 #include "render/virtual_sensor.h"
 
 namespace gonio::glass {
@@ -41,32 +41,6 @@ std::vector<float> rgb_of(const io::Image& rendering, const manifest::ImageEntry
   const io::Image read = render::recorded(rendering, image.noise.value(), image.id + "-rgb", seed);
   std::vector<float> tensor;
   add_planes(tensor, read, {0, 1, 2});
-  return tensor;
-}
-
-std::vector<float> stokes_of(const io::Image& mosaic) {
-  const std::vector<float> variance(mosaic.pixels(), 1);
-  const std::vector<std::uint8_t> trusted(mosaic.pixels(), 1);
-  photograph::MosaicSamples samples;
-  samples.width = mosaic.width, samples.height = mosaic.height;
-  samples.value = mosaic.data, samples.variance = variance, samples.trusted = trusted;
-  const io::Image stokes = photograph::stokes_of_polarizers(samples, photograph::Demosaicing::gradient).colour;
-  std::vector<float> tensor;
-  add_planes(tensor, stokes, {0, 1, 2});
-  return tensor;
-}
-
-// Behind 0, 45, 90 and 135 degrees: each pixel's super-pixel holds one of each.
-std::vector<float> intensities_of(const io::Image& mosaic) {
-  std::vector<float> tensor(4 * mosaic.pixels());
-  for (int y = 0; y < mosaic.height; ++y)
-    for (int x = 0; x < mosaic.width; ++x) {
-      const auto plane = static_cast<std::size_t>(photograph::polarizer_degrees(x, y) / 45);
-      for (int j = y / 2 * 2; j < std::min(y / 2 * 2 + 2, mosaic.height); ++j)
-        for (int i = x / 2 * 2; i < std::min(x / 2 * 2 + 2, mosaic.width); ++i)
-          tensor[plane * mosaic.pixels() + static_cast<std::size_t>(j) * static_cast<std::size_t>(mosaic.width) +
-                 static_cast<std::size_t>(i)] = mosaic.at(x, y, 0);
-    }
   return tensor;
 }
 
@@ -121,8 +95,8 @@ Tensors tensors_of(const GlassSet& set, const Cell& cell) {
     const io::Image rendering = read_layer_file(path, set.wish());
     const io::Image mosaic = read_layer_file(folder / (image.id + "-mosaic.exr"), set.wish());
     all["rgb-" + image.id] = rgb_of(rendering, image, split_mix(set.wish().seed) ^ cell.number);
-    all["stokes-" + image.id] = stokes_of(mosaic);
-    all["intensities-" + image.id] = intensities_of(mosaic);
+    all["stokes-" + image.id] = stokes_of_mosaic(mosaic).values;
+    all["intensities-" + image.id] = intensities_of_mosaic(mosaic).values;
     if (image.id == "bare") add_truth(all, rendering, cell, path);
   }
   return all;

@@ -36,13 +36,19 @@ class Share:
         if self.input.shape[1] != INPUTS[kind]:
             fail(f"{path}: has {self.input.shape[1]} channels, {kind} has {INPUTS[kind]}")
 
+    @classmethod
+    def there(cls, folder, share, kind, light):
+        """None where the set has no such share: it is too small."""
+        path = Path(folder) / "tensors" / f"{share}-mask.npy"
+        return cls(folder, share, kind, light) if path.exists() else None
+
     def __len__(self):
         return len(self.input)
 
     def batch(self, cells):
         seen = torch.from_numpy(numpy.ascontiguousarray(self.input[cells]))
         truth = {name: torch.from_numpy(numpy.ascontiguousarray(array[cells])) for name, array in self.truth.items()}
-        return scaled(seen, self.kind), truth
+        return in_mean_light(seen, self.kind), truth
 
     def fingerprint(self):
         """Of the files' heads and sizes, and of their first cells: which set it was."""
@@ -55,9 +61,8 @@ class Share:
         return digest.hexdigest()
 
 
-def scaled(seen, kind):
-    """By each picture's mean light, so that exposures do not count; then a root, which tames lamps. Signs stay."""
+def in_mean_light(seen, kind):
+    """In units of each picture's mean light before polarizers, so that exposures do not count."""
     light = seen[:, :1] if kind == "stokes" else seen
     mean = light.mean(dim=(1, 2, 3), keepdim=True).clamp_min(1e-6)
-    seen = seen / (mean * (0.5 if kind == "intensities" else 1.0))
-    return torch.sign(seen) * torch.sqrt(torch.abs(seen) + 1e-4)
+    return seen / (mean * (2.0 if kind == "intensities" else 1.0))

@@ -55,15 +55,21 @@ class GlassNet(nn.Module):
         return answers
 
 
+def rooted(seen):
+    """About a root, which tames lamps and reflections; straight at zero, signs stay."""
+    return seen / torch.sqrt(torch.abs(seen) + 0.01)
+
+
 class ForExport(nn.Module):
-    """The answers as one tensor, channels in the order of the heads: what ONNX files of glass-net hold."""
+    """What ONNX files of glass-net hold: from pictures in units of their mean light (glass_set.in_mean_light) to the
+    answers as one tensor, channels in the order of the heads, the mask as a probability."""
 
     def __init__(self, net):
         super().__init__()
         self.net = net
 
     def forward(self, seen):
-        answers = self.net(seen)
+        answers = self.net(rooted(seen))
         return torch.cat([torch.sigmoid(answers[h]) if h == "mask" else answers[h] for h in self.net.heads], dim=1)
 
 
@@ -92,6 +98,7 @@ def loss_of_scales(answers, truth):
         if head == "depth":
             each = torch.abs(answer[:, :1] - truth["depth"]) * torch.exp(-log_scale) + log_scale
         else:
-            each = ((answer[:, :3] - truth[head]) ** 2).sum(1, keepdim=True) * torch.exp(-2 * log_scale) / 2 + 3 * log_scale
+            squared = ((answer[:, :3] - truth[head]) ** 2).sum(1, keepdim=True)
+            each = squared * torch.exp(-2 * log_scale) / 2 + 3 * log_scale
         total = total + (each * mask).sum() / inside
     return total

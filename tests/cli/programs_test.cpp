@@ -201,7 +201,8 @@ TEST_P(Examples, OfTheManPageRun) {
   const auto& [programs, beginning] = GetParam();
   const ScratchFolder scratch;
   const auto shell = [&](const std::string& block, const std::filesystem::path& folder) {
-    const Ended ended = run({"bash", "-euc", std::string("PATH=") + GONIO_BIN + ":$PATH\n" + block}, folder);
+    const Ended ended = run(
+        {"bash", "-euc", std::string("PATH=") + GONIO_BIN + ":$PATH\nSOURCES=" + GONIO_SOURCE + "\n" + block}, folder);
     EXPECT_EQ(ended.status, 0) << block << ended.err;
   };
   const auto begun = scratch / "begun";

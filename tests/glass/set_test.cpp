@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "data.h"
 #include "glass/gather.h"
 #include "glass/make_cell.h"
 #include "glass/tensors.h"
@@ -28,11 +29,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of this process alone: tests of one fixture run beside each other.
 fs::path empty_folder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
+  static const tests::ScratchFolder mine;
+  fs::create_directories(mine / name);
+  return mine / name;
 }
 
 SetWish small(std::size_t objects, std::size_t views) {

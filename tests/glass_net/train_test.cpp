@@ -1,10 +1,13 @@
 // scripts/glass-net on a set of glass-make, with Debian's torch.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <csignal>
+#include <tuple>
 
 #include "base/atomic_file.h"
 #include "data.h"
+#include "io/picture.h"
 #include "manifest/value.h"
 #include "process.h"
 
@@ -115,6 +118,93 @@ TEST_F(GlassNet, RunsBecomeATable) {
   EXPECT_THAT(read_file(path("table.csv")), testing::HasSubstr("lit,scales,front alone,rgb,mask_l1,2,"));
   EXPECT_EQ(run({(scripts / "table").string()}, path(".")).status, 64);
   EXPECT_EQ(run({(scripts / "table").string(), "set.json"}, path(".")).status, 65);
+}
+
+// The program, by OpenCV, against what torch found: errors on the test share, calibration on the share that it is of.
+TEST_F(GlassNet, TheProgramSaysWhatTheNetworkSays) {
+  const Ended trained = train("net", {"--epochs", "12", "--rate", "0.01", "--loss", "scales", "--input", "stokes"});
+  ASSERT_EQ(trained.status, 0) << trained.err;
+  const Ended test = run({"glass-net", "--weights", "net", "--reliability", "set", "--most", "100%"}, path("."));
+  ASSERT_EQ(test.status, 0) << test.err;
+  const manifest::Value errors = *record("net").find("test");
+  for (const auto& [head, of, factor] :
+       {std::tuple{"front: errs by ", "front_deg", 1.0}, std::tuple{"back: errs by ", "back_deg", 1.0},
+        std::tuple{"depth: errs by ", "depth_l1_m", 1e3}}) {
+    const std::size_t at = test.out.find(head);
+    ASSERT_NE(at, std::string::npos) << test.out;
+    const double expected = factor * errors.find(of)->as_number();
+    EXPECT_NEAR(std::stod(test.out.substr(at + std::string(head).size())), expected, 0.006 * expected) << head;
+  }
+  const Ended own = run(
+      {"glass-net", "--weights", "net", "--reliability", "set", "--share", "validation", "--most", "100%"}, path("."));
+  ASSERT_EQ(own.status, 0) << own.err;
+  for (const char* head : {"depth: ", "front: ", "back: "}) {
+    const std::string figure = "calibration error ";
+    const std::size_t at = own.out.find(figure, own.out.find(head));
+    EXPECT_LT(std::stod(own.out.substr(at + figure.size())), 1.0) << own.out;
+  }
+  EXPECT_EQ(run({"glass-net", "--weights", "net", "--reliability", "set", "--most", "0%"}, path(".")).status, 1);
+}
+
+// In tiles as in one piece; a photograph of which each pixel is four says the same.
+TEST_F(GlassNet, TheProgramTilesAndShrinks) {
+  const Ended trained = train("tiled", {"--epochs", "2", "--loss", "scales", "--input", "stokes"});
+  ASSERT_EQ(trained.status, 0) << trained.err;
+  io::Image light(152, 100, {"Y", "s1.Y", "s2.Y"}), large(304, 200, light.channels);
+  for (int y = 0; y < large.height; ++y)
+    for (int x = 0; x < large.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const auto value = static_cast<float>(c == 0 ? 2 + std::sin(0.3 * (x / 2)) : 0.3 * std::cos(0.2 * (y / 2) + c));
+        large.at(x, y, c) = light.at(x / 2, y / 2, c) = value;
+      }
+  io::write_picture(path("light.exr"), light), io::write_picture(path("large.exr"), large);
+  const Words call{"glass-net", "--weights", "tiled", "--out"};
+  const auto answer = [&](const std::string& out, const std::string& file, const Words& more) {
+    Words all = call;
+    all.push_back(out), all.push_back(file + ".exr"), all.insert(all.end(), more.begin(), more.end());
+    const Ended ended = run(all, path("."));
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return io::read_picture(path(out + "/" + file + ".exr"));
+  };
+  const io::Image whole = answer("whole-out", "light", {"--shrink", "1"});
+  EXPECT_TRUE(fs::exists(path("whole-out/report.html")));
+  for (const char* channel : {"mask", "depth.Z", "normal.X", "back_normal.Z", "uncertainty.normal"})
+    EXPECT_GE(whole.channel(channel), 0) << channel;
+  const io::Image tiled = answer("tiled-out", "light", {"--shrink", "1", "--tile", "72"});
+  ASSERT_EQ(tiled.data.size(), whole.data.size());
+  for (std::size_t i = 0; i < whole.data.size(); ++i) ASSERT_NEAR(tiled.data[i], whole.data[i], 1e-4) << i;
+  const io::Image shrunk = answer("shrunk-out", "large", {"--shrink", "2"});
+  ASSERT_EQ(shrunk.width, large.width);
+  double worst = 0;
+  for (int y = 1; y + 1 < light.height; ++y)  // of a block's four pixels the mean is about the block's own answer
+    for (int x = 1; x + 1 < light.width; ++x) {
+      double mean = 0;
+      for (int k = 0; k < 4; ++k) mean += shrunk.at(2 * x + k % 2, 2 * y + k / 2, 0) / 4;
+      worst = std::max(worst, std::abs(mean - whole.at(x, y, 0)));
+    }
+  EXPECT_LT(worst, 0.1);
+}
+
+TEST_F(GlassNet, TheProgramRefuses) {
+  const Ended trained = train("refusing", {"--epochs", "1", "--input", "stokes"});
+  ASSERT_EQ(trained.status, 0) << trained.err;
+  io::write_picture(path("grey.png"), io::Image(64, 64, {"Y"}));
+  io::write_picture(path("colours.exr"), io::Image(64, 64, {"R", "G", "B"}));
+  const auto refused = [&](const Words& more, int status, const std::string& mentions) {
+    Words all{"glass-net", "--out", "nothing"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Ended ended = run(all, path("."));
+    EXPECT_EQ(ended.status, status) << ended.err;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+    EXPECT_THAT(ended.err, testing::HasSubstr(mentions));
+    EXPECT_FALSE(fs::exists(path("nothing/report.html")));
+  };
+  refused({"grey.png"}, 64, "no weights of its own");
+  refused({"--weights", "set", "grey.png"}, 66, "no weights of its own");
+  refused({"--weights", "refusing", "grey.png"}, 65, "is no mosaic of polarizers");
+  refused({"--weights", "refusing", "colours.exr"}, 65, "Stokes vectors");
+  refused({"--weights", "refusing", "missing.png"}, 66, "missing.png");
+  refused({"--weights", "refusing"}, 64, "no photograph");
 }
 
 TEST_F(GlassNet, RefusesWhatDoesNotFit) {

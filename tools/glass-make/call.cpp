@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "glass/form.h"
 #include "glass/make_cell.h"
+#include "glass/turned_views.h"
 
 namespace gonio::tools::glass_make {
 
@@ -115,6 +116,19 @@ std::vector<std::size_t> cells_asked(const cli::Invocation& call, const GlassSet
   return all;
 }
 
+std::vector<std::size_t> recordings_asked(const cli::Invocation& call, const GlassSet& set) {
+  std::vector<std::size_t> all;
+  for (const std::string& text : call.texts("recording")) {
+    if (text.empty() || text.size() > 12 || text.find_first_not_of("0123456789") != std::string::npos)
+      throw Error(Exit::usage, "--recording", "\"" + text + "\" is no number of an object", "they count from 0");
+    all.push_back(std::stoul(text));
+    if (all.back() >= set.wish().objects)
+      throw Error(Exit::usage, "--recording", text + " is none of " + std::to_string(set.wish().objects) + " objects",
+                  "they count from 0");
+  }
+  return all;
+}
+
 bool is_part(const cli::Invocation& call) {
   return call.given("shard") || !call.texts("cell").empty();
 }
@@ -148,6 +162,11 @@ void put_together(cli::Invocation& call, const GlassSet& set) {
   write_file(page, page_of(set, gathered));
   manifest::add_file(call.document, table, "cells");
   for (const fs::path& path : gathered.tensors) manifest::add_file(call.document, path, path.stem().string());
+  for (const std::size_t object : recordings_asked(call, set)) {
+    const fs::path path = call.out / format("object-%zu.json", object);
+    write_file(path, manifest::print_document(turned_views(set, object), call.out));
+    manifest::add_file(call.document, path, path.stem().string());
+  }
 }
 
 }  // namespace
@@ -206,6 +225,13 @@ std::vector<cli::Option> options() {
        .metavar = "NUMBER",
        .repeat = true,
        .conflicts = {"shard"}},
+      {.name = "recording",
+       .type = Type::text,
+       .help =
+           "Write the views of this object, counted from 0, as one recording without the object: object-NUMBER.json.",
+       .metavar = "NUMBER",
+       .repeat = true,
+       .conflicts = {"shard", "cell"}},
       {.name = "gather",
        .type = Type::flag,
        .help = "Make no cell: put finished ones together.",
@@ -227,6 +253,7 @@ Exit run(cli::Invocation& call) {
   for (const auto& paths : {wish.meshes, wish.surroundings})
     for (const fs::path& path : paths) call.note_input(path);
   const GlassSet set(std::move(wish), call.out);
+  recordings_asked(call, set);
   if (!call.flag("gather")) make_cells(call, set);
   if (!is_part(call)) put_together(call, set);
   return Exit::done;

@@ -21,13 +21,16 @@ const cli::Program& gonio_program() {
                 {"meshes, files", "what cells share: bodies, pictures of screens and rooms, spectra; named by content"},
                 {"tensors/SHARE-INPUT.npy",
                  "training, validation and test data as arrays [cell, channel, row, column]"},
+                {"object-NUMBER.json, masks",
+                 "with --recording: the views of an object as one recording, as glass-refine(1) reads it"},
                 {"cells.csv", "one line a cell: what it is, its share, its coverage, its noise"},
                 {"report.html", "what the set is made of"}},
       .references = {"Doest, James, Del Bue & Frisvad, Reconstructing transparent glass objects using polarized light, "
                      "2021.",
                      "Sajjan et al., ClearGrasp: 3D shape estimation of transparent objects for manipulation, ICRA "
                      "2020."},
-      .see_also = {"render(1)", "scene(1)", "develop(1)", "gonio-manifest(5)", "gonio-conventions(7)"},
+      .see_also = {"glass-refine(1)", "render(1)", "scene(1)", "develop(1)", "gonio-manifest(5)",
+                   "gonio-conventions(7)"},
       .check = check,
       .run = run};
   return program;

@@ -92,6 +92,8 @@ TEST_F(GlassMake, RefusesWhatMakesNoSense) {
   expect_refused({"--shard", "1/"}, 64, "--shard");
   expect_refused({"--cell", "-1"}, 64, "--cell");
   expect_refused({"--cell", "50"}, 64, "none of 50 cells");
+  expect_refused({"--recording", "10"}, 64, "none of 10 objects");
+  expect_refused({"--recording", "x"}, 64, "--recording");
   expect_refused({"--form", "cup"}, 64, "cup");
   expect_refused({"--objects", "0"}, 64, "objects");
   expect_refused({"--noise", "0%"}, 64, "noise");
