@@ -50,6 +50,19 @@ std::vector<std::string> mosaic_cameras(const manifest::Document& document) {
   return {cameras.begin(), cameras.end()};
 }
 
+manifest::Document images_of(manifest::Document document, const std::string& camera) {
+  for (manifest::ImageEntry& image : document.images)
+    if (image.camera != camera || image.file.empty()) image.weight = 0;
+  return document;
+}
+
+void write_gain(manifest::Document& document, std::size_t entry, double factor) {
+  manifest::ImageEntry& image = document.images.at(entry);
+  manifest::Parameter gain = image.gain ? *image.gain : manifest::Parameter(1.0);
+  gain.value.at(0) *= factor;
+  image.gain = gain;
+}
+
 photograph::PolarizerArray array_in_use(const manifest::Document& document, const std::string& camera) {
   photograph::PolarizerArray array;
   for (const auto& [id, use] : document.mechanisms) {

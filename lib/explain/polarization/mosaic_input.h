@@ -11,6 +11,10 @@ namespace gonio::explain::polarization {
 
 // Cameras behind polarizers that have recordings, sorted.
 std::vector<std::string> mosaic_cameras(const manifest::Document& document);
+// The document with the recordings of one camera; the others weigh nothing.
+manifest::Document images_of(manifest::Document document, const std::string& camera);
+// The gain of images[entry], a factor more than it was.
+void write_gain(manifest::Document& document, std::size_t entry, double factor);
 // What the manifest's mechanisms have before the samples of `camera`.
 photograph::PolarizerArray array_in_use(const manifest::Document& document, const std::string& camera);
 // On each mirror in question.

@@ -8,11 +8,11 @@
 #include "base/random.h"
 #include "explain/images/traced.h"
 #include "explain/polarization/coat.h"
+#include "explain/polarization/mosaic_input.h"
 #include "explain/polarization/screens.h"
 #include "explain/traced/nodes.h"
 #include "light/mechanisms/screen_leak.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "manifest/sections/surface.h"
 #include "photograph/polarizers.h"
 #include "relighting/repeats.h"
@@ -35,13 +35,6 @@ constexpr double stated_paths = 2e6, other_paths = 5e5, first_paths = 1;
 constexpr double dark = 0.02;                  // of the brightest
 constexpr double least_share_of_sites = 0.03;  // of a surface that is asked for its roughness
 constexpr std::size_t most_surfaces = 2;
-
-// Those of one camera; the others weigh nothing.
-manifest::Document images_of(manifest::Document document, const std::string& camera) {
-  for (manifest::ImageEntry& image : document.images)
-    if (image.camera != camera || image.file.empty()) image.weight = 0;
-  return document;
-}
 
 // Rec. 709 luminance of triples.
 std::vector<double> luminances(const std::vector<double>& rgb) {

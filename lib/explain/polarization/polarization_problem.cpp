@@ -12,8 +12,6 @@
 #include "explain/polarization/polarization_outcome.h"
 #include "explain/polarization/polarization_term.h"
 #include "inference/explanation.h"
-#include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "photograph/polarizers.h"
 #include "relighting/cells.h"
 #include "stats/intervals.h"
@@ -68,12 +66,8 @@ class PolarizationProblem final : public Problem {
   }
   void apply(const Explanation& e, manifest::Document& document) const override {
     for (const Use& use : uses_) upgrade(light_.setup(), use, e, document);
-    for (std::size_t g = 0; g < light_.recordings().images.size(); ++g) {
-      const relighting::Recording& image = light_.recordings().images[g];
-      manifest::Parameter gain = image.gain;
-      gain.value = {image.gain.value.at(0) * e.values[exposure_] * e.values[own_exposure_ + g]};
-      document.images.at(image.entry).gain = gain;
-    }
+    for (std::size_t g = 0; g < light_.recordings().images.size(); ++g)
+      write_gain(document, light_.recordings().images[g].entry, e.values[exposure_] * e.values[own_exposure_ + g]);
   }
   Illustration illustrate(const Explanation& e, const std::filesystem::path&, manifest::Document&) const override {
     return illustrate_mosaics(light_, rows_, observations_, e);

@@ -9,7 +9,6 @@
 #include "io/exr.h"
 #include "io/picture.h"
 #include "manifest/document.h"
-#include "manifest/sections/image.h"
 #include "render/looking_at.h"
 #include "render/path_tracer.h"
 #include "render/sensor_chain.h"
@@ -64,12 +63,12 @@ inline void photograph_mosaics(const std::string& made, const std::filesystem::p
   const manifest::Document document = manifest::parse_document(made, "made.json", folder);
   const scene::Scene scene = scene::build_scene(document);
   const render::RayCaster caster(scene.instances);
-  for (std::size_t k = 0; k < document.images.size(); ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(mosaic_views); ++k) {
+    const std::string id = format("i%zu", k);
     const io::Image seen = render::render(
         scene, k, caster,
         {.spp = 256, .seed = seed, .geometry = false, .transport = {.stokes = true, .from_lights = false}});
-    io::write_picture(folder / (document.images[k].id + ".exr"),
-                      render::recorded(seen, render::sensor_of(document, k), document.images[k].id, seed));
+    io::write_picture(folder / (id + ".exr"), render::recorded(seen, render::sensor_of(document, k), id, seed));
   }
 }
 
