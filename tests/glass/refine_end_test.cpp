@@ -4,26 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
+#include "data.h"
 #include "glass/refine/answer.h"
 #include "glass/refine_world.h"
 
 namespace gonio::glass {
 namespace {
 
-namespace fs = std::filesystem;
-
 class RefinedLathe : public testing::Test {
  protected:
   static constexpr std::size_t held = 7;
   static const World& world() {
     static const World made = [] {
-      const fs::path folder = fs::path(testing::TempDir()) / "refined-lathe";
-      fs::remove_all(folder);
+      const tests::ScratchFolder folder;
       WorldWish wish;
       wish.seed = 1, wish.views = 8, wish.size_px = 44, wish.spp = 16, wish.relative_error = 0.3;
-      World w = make_world(wish, folder);
+      World w = make_world(wish, folder.path());
       add_stand_in(w, 22, 32, 8, 5);
       return w;
     }();
