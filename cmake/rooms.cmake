@@ -123,6 +123,8 @@ function(gonio_finish_library)
     all_light_bindings lights)
   gonio_bindings(explain/volumes/terms Term explain/volumes/volume_term.h gonio::explain::volumes all_terms terms)
   gonio_bindings(explain/prints/terms Term explain/prints/print_term.h gonio::explain::prints all_terms terms)
+  gonio_bindings(explain/polarization/terms Term explain/polarization/polarization_term.h gonio::explain::polarization
+    all_terms terms)
   gonio_registry(${GONIO_GENERATED}/domains.cpp Domain explain/domain.h
     "std::span<const gonio::explain::Domain* const> gonio::explain::all_domains()" gonio::explain::domains
     ${domain_files})

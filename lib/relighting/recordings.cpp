@@ -1,7 +1,7 @@
 // Reading of recordings. Where the manifest states no noise, and the file no variance, it is measured: the median
 // absolute value of the horizontal second difference (1, -2, 1), whose variance is six times that of a pixel, scaled to
 // a standard deviation by 1 / 0.6745 (Rousseeuw & Croux 1993). Smooth shading cancels in it, and edges are too few to
-// move a median.
+// move a median. Behind a mosaic the three stand behind the same filter.
 #include "relighting/recordings.h"
 
 #include <algorithm>
@@ -10,6 +10,8 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "camera/intrinsics.h"
+#include "camera/mosaic.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
@@ -89,16 +91,18 @@ manifest::Noise usual_noise(const Recording& image) {
   return {.gain = 0, .read = counted.empty() ? 1e-6 : std::sqrt(stats::median(counted))};
 }
 
-manifest::Noise measured_noise(const Recording& image) {
+// `step`: pixels to the next behind the same filter.
+manifest::Noise measured_noise(const Recording& image, int step) {
   std::vector<double> differences;
   const io::Image& p = image.picture;
   for (int y = 0; y < p.height; ++y)
-    for (int x = 1; x + 1 < p.width; ++x) {
+    for (int x = step; x + step < p.width; ++x) {
       const std::size_t i =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x);
-      if (!image.counts[i - 1] || !image.counts[i] || !image.counts[i + 1]) continue;
+      const auto far = static_cast<std::size_t>(step);
+      if (!image.counts[i - far] || !image.counts[i] || !image.counts[i + far]) continue;
       for (int c = 0; c < 3; ++c)
-        differences.push_back(std::abs(double{p.at(x - 1, y, c)} - 2.0 * p.at(x, y, c) + p.at(x + 1, y, c)));
+        differences.push_back(std::abs(double{p.at(x - step, y, c)} - 2.0 * p.at(x, y, c) + p.at(x + step, y, c)));
     }
   const double sigma = differences.empty() ? 0 : stats::median(differences) / 0.6745 / std::sqrt(6.0);
   return {.gain = 0, .read = std::max(sigma, 1e-6)};
@@ -178,7 +182,11 @@ Recordings read_recordings(const manifest::Document& document) {
              "give the camera the size of its pictures");
     image.mean = mean_of_finite(image.picture);
     leave_out_masked(document, image);
-    image.noise = entry.noise ? *entry.noise : image.variance.empty() ? measured_noise(image) : usual_noise(image);
+    const int step = camera::filter_pitch(camera::mosaic_of(document, entry.camera),
+                                          manifest::place(document, "/cameras/" + entry.camera + "/mosaic"));
+    image.noise = entry.noise              ? *entry.noise
+                  : image.variance.empty() ? measured_noise(image, step)
+                                           : usual_noise(image);
     image.gain = entry.gain ? *entry.gain : manifest::Parameter(1.0);
     image.exposure_s = entry.exposure_s;
     image.time_s = entry.time_s;

@@ -10,10 +10,15 @@
 #include "io/image.h"
 #include "mechanism/mechanism.h"
 
+namespace gonio::photograph {
+struct PolarizerArray;  // photograph/polarizer_array.h
+}
+
 namespace gonio::render {
 
 enum class Step {  // in the order of the chain
   optics,          // pictures before the filters, linear in all bands: Stokes planes are treated as the radiance is
+  polarizers,      // what stands before the samples of a polarization camera; nothing elsewhere
   charge,          // pictures behind the filters: what pixels give each other
   light,           // a value before photon noise
   signal,          // a value behind photon noise
@@ -40,6 +45,8 @@ struct Link {
   OnPicture (*picture)(std::span<const double> p, double exposure_s) = nullptr;  // exposure_s 0: not stated
   // Step optics only, instead of `picture`: what depends on where the axis meets the picture.
   OnPicture (*lens)(std::span<const double> p, const camera::CameraModel& camera) = nullptr;
+  // Of cameras behind polarizers this acts, and nothing else that the link has.
+  void (*polarizers)(std::span<const double> p, photograph::PolarizerArray& array) = nullptr;
 };
 
 std::span<const Link* const> all_links();  // sorted by name; defined in a generated source

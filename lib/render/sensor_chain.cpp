@@ -1,19 +1,20 @@
 #include "render/sensor_chain.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "camera/intrinsics.h"
+#include "camera/mosaic.h"
 #include "manifest/document.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "render/image_seed.h"
 #include "render/mosaic.h"
+#include "render/polarizer_reading.h"
 #include "scene/mechanisms.h"
 
 namespace gonio::render {
@@ -36,9 +37,13 @@ double poisson(double expected, Random& random) {
   return events;
 }
 
+bool behind_polarizers(const Sensor& sensor) {
+  return sensor.mosaic == camera::polarizers;
+}
+
 void act(const Sensor& sensor, Step step, io::Image& image) {
   for (const Sensor::Active& active : sensor.links) {
-    if (active.link->step != step) continue;
+    if (active.link->step != step || (active.link->polarizers != nullptr && behind_polarizers(sensor))) continue;
     if (active.link->lens != nullptr) {
       if (sensor.lens) active.link->lens(active.amounts, *sensor.lens)(image);
       continue;
@@ -67,20 +72,17 @@ io::Image through_optics(const io::Image& rendered, const Sensor& sensor, const 
   return image;
 }
 
-io::Image joined(const std::array<io::Image, 3>& parts) {
-  io::Image result(parts[0].width, parts[0].height, {"R", "G", "B", "s1.R", "s1.G", "s1.B", "s2.R", "s2.G", "s2.B"});
-  for (std::size_t i = 0; i < result.pixels(); ++i)
-    for (std::size_t p = 0; p < 3; ++p)
-      for (std::size_t c = 0; c < 3; ++c) result.data[9 * i + 3 * p + c] = parts[p].data[3 * i + c];
-  return result;
-}
-
 io::Image behind_filters(const io::Image& rendered, const Sensor& sensor) {
   io::Image image = through_optics(rendered, sensor, "");
   if (sensor.mosaic.empty()) return image;
-  if (sensor.mosaic != "polarizers") return bayer_mosaic(image, sensor.mosaic);
-  return luminance(polarizer_mosaic(
-      joined({std::move(image), through_optics(rendered, sensor, "s1."), through_optics(rendered, sensor, "s2.")})));
+  if (!behind_polarizers(sensor)) return bayer_mosaic(image, sensor.mosaic);
+  photograph::PolarizerArray array;
+  for (const Sensor::Active& active : sensor.links)
+    if (active.link->polarizers != nullptr) active.link->polarizers(active.amounts, array);
+  std::vector<io::Image> parts{std::move(image)};
+  for (const char* prefix : {"s1.", "s2.", "s3."})
+    if (prefix[1] != '3' || array.retardance_rad != 0) parts.push_back(through_optics(rendered, sensor, prefix));
+  return polarizer_reading(parts, array, sensor.lens ? &*sensor.lens : nullptr);
 }
 
 // The links that act on single values, bound to their amounts.

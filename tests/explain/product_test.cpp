@@ -51,7 +51,7 @@ TEST(Product, WhatIsDeclaredIsBoundAndWhatIsBoundIsDeclared) {
       {"images", "lib/relighting/terms"},           {"tables", "lib/explain/tables/terms"},
       {"tables", "lib/explain/tables/reflectance"}, {"stacks", "lib/explain/stacks/exposures"},
       {"stacks", "lib/explain/stacks/lights"},      {"volumes", "lib/explain/volumes/terms"},
-      {"prints", "lib/explain/prints/terms"}};
+      {"prints", "lib/explain/prints/terms"},       {"polarization", "lib/explain/polarization/terms"}};
   std::map<std::string, std::set<std::string>> bound;  // by domain
   for (const auto& [domain, folder] : folders)
     for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(GONIO_SOURCE) / folder))
@@ -71,7 +71,7 @@ TEST(Product, WhatIsDeclaredIsBoundAndWhatIsBoundIsDeclared) {
     const auto declared = [&](const char* domain) { return std::ranges::count(m->domains, domain) > 0; };
     for (const auto& [domain, stems] : bound)
       EXPECT_TRUE(declared(domain.c_str()) || !stems.contains(stem)) << m->id << " is bound in " << domain;
-    for (const char* domain : {"images", "stacks", "volumes"})
+    for (const char* domain : {"images", "stacks", "volumes", "polarization"})
       EXPECT_TRUE(!declared(domain) || bound[domain].contains(stem) ||
                   (std::string(domain) == "images" && expressed(*m)))
           << m->id << " says " << domain << " and is bound to nothing there";

@@ -40,7 +40,8 @@ const std::set<std::string> of_other_simulators = {"geometry.beam-hardening"};
 // in the dark, what filters that are not the eye's do to colours, what an open aperture loses at a rim; what
 // bends the points of structured light; sizes that differ from a model's along each axis, what curls, and
 // light that masks of shadows leave out; how rough glass and metal are and where, and light beneath a surface that
-// remembers where it was going; what a printer does to the heights of what it prints.
+// remembers where it was going; what a printer does to the heights of what it prints; what polarizers of cameras and
+// screens do, and what stands between.
 const std::set<std::string> besides = words(
     "lens.rational surface.residue surface.walls tracks.scale ct.threshold ct.scale ct.blur ct.cupping "
     "ct.beam-hardening ct.scatter ct.ring ct.streak ct.axis-tilt robot.warm-up robot.joule-heating "
@@ -53,7 +54,8 @@ const std::set<std::string> besides = words(
     "structured-light.interreflection structured-light.edge structured-light.defocus geometry.shrinkage "
     "geometry.bend ground.not-flat mask.caustic surface.roughness surface.print-slopes surface.print-layers "
     "surface.polish surface.directional-subsurface print.growth print.bleed print.overcure print.layer-shift "
-    "print.shrinkage print.membrane print.pixel-tilt print.ground-noise");
+    "print.shrinkage print.membrane print.pixel-tilt print.ground-noise polarizer.leak polarizer.angle "
+    "lens.birefringence screen.leak screen.angle retarder.dispersion surface.coating");
 
 // Owed and not there yet: printed, until they are declared and leave this list.
 const std::set<std::string> awaited = {};

@@ -24,7 +24,8 @@ const std::vector<std::string> simulators = {"lib/scene/edits/",
                                              "lib/explain/stacks/exposures/",
                                              "lib/explain/stacks/lights/",
                                              "lib/explain/volumes/terms/",
-                                             "lib/explain/prints/terms/"};
+                                             "lib/explain/prints/terms/",
+                                             "lib/explain/polarization/terms/"};
 
 // Reasons why a domain cannot ask for a mechanism stand beside the domain; explain/product_test holds their ids against
 // the registry.

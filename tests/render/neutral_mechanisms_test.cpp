@@ -49,10 +49,10 @@ bool concerns_pictures(const Mechanism& m) {
   const auto is_for = [&](const char* domain) { return std::ranges::find(m.domains, domain) != m.domains.end(); };
   const bool lens = m.stage == "lens" && m.target == Target::camera;
   // Acts through columns, height maps, tracks, volumes or clouds, which no picture has, or on glass and prints, which
-  // are not here: what is traced is written into the surfaces themselves.
+  // are not here: what is traced is written into the surfaces themselves; or behind polarizers.
   const bool tables_alone = !m.domains.empty() && std::ranges::all_of(m.domains, [](const std::string& domain) {
     return domain == "tables" || domain == "heights" || domain == "nrsfm" || domain == "volumes" ||
-           domain == "prints" || domain == "clouds" || domain == "traced";
+           domain == "prints" || domain == "clouds" || domain == "traced" || domain == "polarization";
   });
   return lens || is_for("images") || !(is_for("boards") || is_for("robot") || tables_alone);
 }

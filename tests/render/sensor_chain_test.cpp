@@ -9,6 +9,7 @@
 #include "camera/intrinsics.h"
 #include "geom/vector.h"
 #include "manifest/document.h"
+#include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
 #include "manifest/sections/mechanism_use.h"
 #include "render/mechanisms/sensor_saturation.h"
@@ -22,6 +23,14 @@ using mechanism::Target;
 
 io::Image picture_of(int width, int height, std::uint64_t seed) {
   io::Image picture(width, height, {"R", "G", "B", "variance.R"});
+  Random random(seed);
+  for (float& v : picture.data) v = static_cast<float>(random.uniform(0.1, 2));
+  return picture;
+}
+// With all Stokes components.
+io::Image polarized_picture(int width, int height, std::uint64_t seed) {
+  io::Image picture(width, height,
+                    {"R", "G", "B", "s1.R", "s1.G", "s1.B", "s2.R", "s2.G", "s2.B", "s3.R", "s3.G", "s3.B"});
   Random random(seed);
   for (float& v : picture.data) v = static_cast<float>(random.uniform(0.1, 2));
   return picture;
@@ -41,8 +50,11 @@ manifest::Document document_with(const std::map<std::string, manifest::Mechanism
 manifest::MechanismUse use(const manifest::Parameters& parameters, const std::vector<std::string>& on = {}) {
   return {.on = on, .parameters = parameters, .sigma = {}};
 }
-io::Image recorded_with(const io::Image& picture, const std::map<std::string, manifest::MechanismUse>& mechanisms) {
-  return recorded(picture, sensor_of(document_with(mechanisms), 0), "view", 7);
+io::Image recorded_with(const io::Image& picture, const std::map<std::string, manifest::MechanismUse>& mechanisms,
+                        const std::string& mosaic = "") {
+  manifest::Document document = document_with(mechanisms);
+  document.cameras.at("cam").mosaic = mosaic;
+  return recorded(picture, sensor_of(document, 0), "view", 7);
 }
 
 // Of pictures, and not of board corners or robots alone.
@@ -55,11 +67,11 @@ bool concerns_pictures(const Mechanism& m) {
 // and what a camera's section states belong to the rays that are cast, and render says what it leaves out; lateral
 // colour moves what the rays have brought.
 TEST(SensorChain, EveryLinkVanishesAtNeutralAndActsOtherwise) {
-  const io::Image picture = picture_of(12, 9, 1);
-  const io::Image plain = recorded_with(picture, {});
+  const io::Image coloured = picture_of(12, 9, 1), polarized = polarized_picture(12, 9, 1);
+  const io::Image as_it_was = recorded_with(coloured, {}), behind = recorded_with(polarized, {}, "polarizers");
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 12; ++x)
-      for (int c = 0; c < 3; ++c) ASSERT_EQ(plain.at(x, y, c), picture.at(x, y, c));
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(as_it_was.at(x, y, c), coloured.at(x, y, c));
   int count = 0;
   for (const Mechanism* m : mechanism::all_mechanisms()) {
     const bool ours =
@@ -69,6 +81,11 @@ TEST(SensorChain, EveryLinkVanishesAtNeutralAndActsOtherwise) {
     EXPECT_EQ(in_sensor_chain(*m), (ours && !elsewhere) || m->id == "lens.lateral-colour") << m->id;
     if (!in_sensor_chain(*m)) continue;
     ++count;
+    const bool of_polarizers = m->domains.front() == "polarization";
+    const io::Image &picture = of_polarizers ? polarized : coloured, &plain = of_polarizers ? behind : as_it_was;
+    const auto recorded_with = [&](const io::Image& of, const std::map<std::string, manifest::MechanismUse>& uses) {
+      return render::recorded_with(of, uses, of_polarizers ? "polarizers" : "");
+    };
     manifest::Parameters neutral, other;
     for (const auto& p : m->parameters) {
       neutral[p.name] = p.neutral;

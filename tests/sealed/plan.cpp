@@ -106,7 +106,15 @@ const std::vector<WorldEntry> entries{
       {Kind::single, {"ground"}, "two prints", 5, 0},
       {Kind::pair, {"ground", "pressed membrane"}, "two prints", 2, 0}},
      {8, 3, 4, 4, 2, 3},
-     {2, 0, 1, 0, 0, 0, 2}}};
+     {2, 0, 1, 0, 0, 0, 2}},
+    {"polarization",
+     polarization_world,
+     {{Kind::alike, {"leaky polarizers"}, "even light", 4, 1},
+      {Kind::alike, {"crosstalk"}, "even light", 4, 1},
+      {Kind::alike, {"turned screen"}, "screen alone"}},
+     {10, 4, 4, 6, 3, 3},
+     {2, 1, 1, 2, 0, 1, 2}},
+    {"polarimeter", polarimeter_world, {}, {14, 6, 8, 8, 0, 5}, {7, 3, 4, 5, 0, 4}}};
 
 // Sizes in detection limits, in turn: 0 draws what occurs in practice.
 constexpr double multiples[] = {0, 4, 0, 8, 0, 0};

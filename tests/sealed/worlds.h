@@ -43,5 +43,7 @@ std::unique_ptr<World> heights_world();
 std::unique_ptr<World> tomograph_world();
 std::unique_ptr<World> markers_world();
 std::unique_ptr<World> prints_world();
+std::unique_ptr<World> polarization_world();
+std::unique_ptr<World> polarimeter_world();
 
 }  // namespace gonio::sealed

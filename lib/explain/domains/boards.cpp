@@ -28,7 +28,11 @@ const Domain& boards() {
             return files;
           },
       .untouched =
-          {{"print.", "a board of corners has no printed heights"},
+          {{"polarizer.", "corners say where light goes, not how it swings"},
+           {"screen.", "corners say where light goes, not how it swings"},
+           {"retarder.", "corners say where light goes, not how it swings"},
+           {"lens.birefringence", "corners say where light goes, not how it swings"},
+           {"print.", "a board of corners has no printed heights"},
            {"light.", "corners are places, and keep no brightness"},
            {"camera.aspect", "the base model's own: free in every calibration from corners"},
            {"camera.principal-point", "the base model's own: free in every calibration from corners"},

@@ -37,6 +37,9 @@ const Domain& clouds() {
           },
       .files = files_of_clouds,
       .untouched = {
+          {"polarizer.", "points say nothing of how light swings"},
+          {"screen.", "points say nothing of how light swings"},
+          {"retarder.", "points say nothing of how light swings"},
           {"print.", "what was sent to a printer is not known of a cloud"},
           {"surface.",
            "points are places, and keep no brightness; what a surface does to where they lie is "

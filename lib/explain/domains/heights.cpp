@@ -28,7 +28,10 @@ const Domain& heights() {
             return files;
           },
       .untouched =
-          {{"print.", "what was sent to a printer is not known of a map: explain takes prints with measured maps"},
+          {{"polarizer.", "a height map has no light"},
+           {"screen.", "a height map has no light"},
+           {"retarder.", "a height map has no light"},
+           {"print.", "what was sent to a printer is not known of a map: explain takes prints with measured maps"},
            {"surface.", "it changes what light does, and leaves the relief as it is; a height map has no light"},
            {"light.", "a height map has no light"},
            {"optics.", "how an instrument sees is in its own transfer function, which a height map does not state"},

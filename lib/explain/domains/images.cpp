@@ -1,6 +1,7 @@
 // Linear images of a scene whose geometry is known.
 #include "explain/domain.h"
 #include "explain/images/images_problem.h"
+#include "explain/polarization/polarization_problem.h"
 #include "explain/traced/takes.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
@@ -17,6 +18,10 @@ std::vector<Untouched> image_reasons() {
           {"rig.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
           {"structured-light.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
           {"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},
+          {"polarizer.", "pictures without polarizers see the sum alone (polarization)"},
+          {"screen.", "pictures without polarizers see the sum alone (polarization)"},
+          {"retarder.", "pictures without polarizers see the sum alone (polarization)"},
+          {"lens.birefringence", "pictures without polarizers see the sum alone (polarization)"},
           {"robot.",
            "where the cameras stand is known here or free; how a robot missed that place is a hand-eye set (robot)"},
           {"tracks.", "no point is followed: pixels are compared where they are"},
@@ -49,6 +54,7 @@ std::vector<Untouched> image_reasons() {
           {"surface.directional-subsurface", "the fast model spreads light evenly about where it enters: traced"},
           {"surface.residue", "reliefs turn with the sample, which is measured by tables of reflectance"},
           {"surface.walls", "reliefs turn with the sample, which is measured by tables of reflectance"},
+          {"surface.coating", "pictures without polarizers see the sum alone (polarization)"},
           {"surface.thin-film", "three channels average over its fringes: tables of reflectance in narrow bands"},
           {"volume.",
            "what is seen through glass is left out of the fast model: tables of transmittance, or render and "
@@ -72,7 +78,7 @@ const Domain& images() {
       .needs_it = true,
       .applies =
           [](const manifest::Document& d) {
-            return explain::images::has_recordings(d) && !explain::traced::beyond_the_fast_model(d);
+            return explain::images::has_recordings(d) && !explain::traced::beyond_the_fast_model(d) && !has_mosaics(d);
           },
       .within_reach = relighting::check_lights,
       .problems =

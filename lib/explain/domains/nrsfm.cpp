@@ -19,6 +19,9 @@ const Domain& nrsfm() {
           },
       .files = gonio::nrsfm::followed_files,
       .untouched = {
+          {"polarizer.", "tracks say where light goes, not how it swings"},
+          {"screen.", "tracks say where light goes, not how it swings"},
+          {"retarder.", "tracks say where light goes, not how it swings"},
           {"print.", "tracks show no printed heights"},
           {"projector.", "tracks have no projector"},
           {"rig.", "tracks have no projector"},

@@ -43,6 +43,9 @@ const Domain& outlines() {
           },
       .files = files_of_outlines,
       .untouched = {
+          {"polarizer.", "rims say where things are, not how light swings"},
+          {"screen.", "rims say where things are, not how light swings"},
+          {"retarder.", "rims say where things are, not how light swings"},
           {"print.", "layers and grey values are below what rims show; geometry.shrinkage is"},
           {"surface.", "rims are places, and keep no brightness"},
           {"light.",

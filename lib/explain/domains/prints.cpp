@@ -19,6 +19,9 @@ const Domain& prints() {
           },
       .files = prints_files,
       .untouched = {
+          {"polarizer.", "a height map has no light"},
+          {"screen.", "a height map has no light"},
+          {"retarder.", "a height map has no light"},
           {"surface.", "a map of heights says nothing of what light does on the surface"},
           {"light.", "the projector's light is what was sent; what it does to resin is print.growth and print.bleed"},
           {"optics.",

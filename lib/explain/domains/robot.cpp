@@ -18,6 +18,12 @@ std::vector<std::filesystem::path> calibrations_of(const manifest::Document& doc
   return files;
 }
 
+std::vector<std::unique_ptr<Problem>> mountings(const manifest::Document& document, const ProblemOptions&) {
+  std::vector<std::unique_ptr<Problem>> problems;
+  for (ChainInput& input : robot_inputs(document)) problems.push_back(robot_problem(std::move(input)));
+  return problems;
+}
+
 }  // namespace
 
 const Domain& robot() {
@@ -30,14 +36,12 @@ const Domain& robot() {
       .witness_of = "boards",
       .testify = hand_eye_testimony,
       .applies = has_hand_eye,
-      .problems =
-          [](const manifest::Document& document, const ProblemOptions&) {
-            std::vector<std::unique_ptr<Problem>> problems;
-            for (ChainInput& input : robot_inputs(document)) problems.push_back(robot_problem(std::move(input)));
-            return problems;
-          },
+      .problems = mountings,
       .files = calibrations_of,
       .untouched = {
+          {"polarizer.", "poses say nothing of how light swings"},
+          {"screen.", "poses say nothing of how light swings"},
+          {"retarder.", "poses say nothing of how light swings"},
           {"print.", "an arm prints nothing"},
           {"projector.", "poses come from boards; no projector shows codes"},
           {"rig.", "poses come from boards; no projector shows codes"},

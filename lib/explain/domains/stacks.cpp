@@ -9,7 +9,7 @@ namespace gonio::explain::domains {
 
 namespace {
 
-std::vector<Untouched> stack_reasons() {
+std::vector<Untouched> reasons_one_by_one() {
   return {
       {"print.", "heights of a voxel are below what pictures show"},
       {"projector.", "exposures of a still scene are no codes: points that were decoded from them are clouds"},
@@ -57,6 +57,7 @@ std::vector<Untouched> stack_reasons() {
       {"surface.spatial-variation", "albedo and tint are free at every patch"},
       {"surface.specular", "so few lamps find a lobe at most once or twice: too coarse a scan to part two"},
       {"surface.subsurface", "needs the distance to where light enters, and a stack has no geometry"},
+      {"surface.coating", "three channels under few lamps show one phase in ten: tables of a polarimeter"},
       {"surface.thin-film", "three channels under few lamps show one phase in ten: tables of reflectance"},
       {"volume.", "nothing is known to be transparent"},
       {"reference.", "a stack has no white tile beside it"},
@@ -67,6 +68,13 @@ std::vector<Untouched> stack_reasons() {
       {"colour.",
        "a stack knows no reference colours: glare on it is optics.veiling-glare, on a chart tables of the model chart"},
       {"probe.", "mirror balls beside a stack are read by light-probe(1), which leaves tables of the model probe"}};
+}
+
+std::vector<Untouched> stack_reasons() {
+  std::vector<Untouched> all = reasons_one_by_one();
+  for (const char* ids : {"polarizer.", "screen.", "retarder."})
+    all.push_back({ids, "a stack has no geometry to tell how its light swings"});
+  return all;
 }
 
 }  // namespace

@@ -6,25 +6,30 @@
 #include "manifest/sections/table.h"
 
 namespace gonio::explain::domains {
+namespace {
+
+std::vector<std::filesystem::path> files_of_tables(const manifest::Document& document) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& [name, table] : document.tables)
+    if (explain::tables::find_model(table.model) != nullptr && !table.file.empty())
+      files.push_back(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
+  return files;
+}
+
+}  // namespace
 
 const Domain& tables() {
   static const Domain domain{
       .name = "tables",
       .sentence =
           "tables whose model predicts them (sensor, light, volume, surface, tracks, markers, probe, probe-radiance, "
-          "chart, temperature, ellipsometer, tracker, arm, expression)",
+          "chart, temperature, ellipsometer, polarimeter, tracker, arm, expression)",
       .order = 4,
       .applies = explain::tables::has_tables,
       .problems = explain::tables::table_problems,
-      .files =
-          [](const manifest::Document& document) {
-            std::vector<std::filesystem::path> files;
-            for (const auto& [name, table] : document.tables)
-              if (explain::tables::find_model(table.model) != nullptr && !table.file.empty())
-                files.push_back(manifest::resolve(document, table.file, "/tables/" + name + "/file"));
-            return files;
-          },
+      .files = files_of_tables,
       .untouched = {
+          {"screen.", "a polarimeter has lamps of its own: what they send is told by its polarizer"},
           {"print.", "a table of readings has no pictures that were sent to a printer"},
           {"projector.", "rows of a table are no codes: points that were decoded from pictures are clouds"},
           {"rig.", "rows of a table are no codes: points that were decoded from pictures are clouds"},

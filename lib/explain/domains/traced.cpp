@@ -1,5 +1,6 @@
 // Linear images of what the path tracer alone can simulate.
 #include "explain/domain.h"
+#include "explain/polarization/polarization_problem.h"
 #include "explain/traced/takes.h"
 #include "explain/traced/traced_problem.h"
 #include "manifest/document.h"
@@ -16,6 +17,9 @@ std::vector<Untouched> traced_reasons() {
       {"rig.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
       {"structured-light.", "pictures of a scene are no codes: points that were decoded from them are clouds"},
       {"board.", "a board in a scene is an object like others; what its corners tell is the domain boards"},
+      {"polarizer.", "pictures without polarizers see the sum alone (polarization)"},
+      {"screen.", "pictures without polarizers see the sum alone (polarization)"},
+      {"retarder.", "pictures without polarizers see the sum alone (polarization)"},
       {"robot.", "where the cameras stand is known here; how a robot missed that place is a hand-eye set (robot)"},
       {"tracks.", "no point is followed: pixels are compared where they are"},
       {"marker.", "markers are tables of the model markers"},
@@ -48,7 +52,7 @@ const Domain& traced() {
       .order = 10,
       .after = "images",
       .objects = explain::traced::traced_objection,
-      .applies = explain::traced::wants_tracing,
+      .applies = [](const manifest::Document& d) { return explain::traced::wants_tracing(d) && !has_mosaics(d); },
       .within_reach = explain::traced::check_reach,
       .problems =
           [](const manifest::Document& document, const ProblemOptions& options) {

@@ -18,6 +18,9 @@ const Domain& volumes() {
           },
       .files = volumes_files,
       .untouched = {
+          {"polarizer.", "no X-ray is polarized by what is here"},
+          {"screen.", "no X-ray is polarized by what is here"},
+          {"retarder.", "no X-ray is polarized by what is here"},
           {"print.", "what was sent to a printer is not known of a scanned part"},
           {"projector.", "no projector shows codes"},
           {"rig.", "no projector shows codes"},

@@ -19,9 +19,9 @@ namespace {
 constexpr std::uint64_t photons_per_path = 3;
 constexpr double least_spp = 32, most_spp = 4096;
 
-// One pass of a pixel: the mean of its samples.
-Rgb trace_pass(const render::Integrator& integrator, const render::SamplePlan& plan, std::uint64_t seed,
-               std::size_t place, int pass, std::array<int, 2> at) {
+// One pass of a pixel: the mean of its samples, plane by plane.
+std::vector<Rgb> trace_pass(const render::Integrator& integrator, const render::SamplePlan& plan, std::uint64_t seed,
+                            std::size_t place, int pass, std::array<int, 2> at) {
   std::vector<Rgb> planes(integrator.planes().size());
   render::Noticed noticed;
   noticed.seen.resize(integrator.lights());
@@ -30,7 +30,8 @@ Rgb trace_pass(const render::Integrator& integrator, const render::SamplePlan& p
     render::Sampler sampler(seed, stream, static_cast<std::uint32_t>(sample));
     integrator.trace(Vec2{at[0] - 0.5, at[1] - 0.5} + sampler.two(), sampler, planes, noticed);
   }
-  return planes[0] / plan.samples_per_pass;
+  for (Rgb& plane : planes) plane = plane / plan.samples_per_pass;
+  return planes;
 }
 
 // Sums over the passes of all pixels of a picture become means and their variances.
@@ -49,11 +50,14 @@ void trace_picture(const render::Integrator& integrator, const scene::View& view
         0, count,
         [&](std::size_t k) {
           const auto [x, y] = picture.at[k];
-          Rgb mean = trace_pass(integrator, plan, seed, k, pass, picture.at[k]);
-          if (splats)
-            mean += splats->value(
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x), 0);
-          sum[k] += mean, squares[k] += mean * mean;
+          std::vector<Rgb> mean = trace_pass(integrator, plan, seed, k, pass, picture.at[k]);
+          for (std::size_t p = 0; p < mean.size() && splats; ++p)
+            mean[p] += splats->value(
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x), p);
+          sum[k] += mean[0], squares[k] += mean[0] * mean[0];
+          for (std::size_t p = 1; p < mean.size(); ++p)
+            for (int c = 0; c < 3; ++c)
+              picture.stokes[9 * k + 3 * (p - 1) + static_cast<std::size_t>(c)] += mean[p][c] / plan.passes;
         },
         8);
   }
@@ -70,10 +74,11 @@ void trace_picture(const render::Integrator& integrator, const scene::View& view
 }  // namespace
 
 bool trace_pixels(const manifest::Document& document, std::vector<TracedPixels>& pictures, double paths,
-                  std::uint64_t seed, Caustics caustics) {
+                  std::uint64_t seed, Caustics caustics, Light light) {
   const scene::Scene scene = scene::build_scene(document);
   const render::RayCaster caster(scene.instances);
-  const render::Transport transport{.adaptive = false};
+  const bool polarized = light == Light::polarized;  // of screens: large enough for paths from the camera alone
+  const render::Transport transport{.stokes = polarized, .from_lights = !polarized, .adaptive = false};
   double pixels = 0;
   for (const TracedPixels& picture : pictures) pixels += static_cast<double>(picture.at.size());
   const render::SamplePlan plan =
@@ -83,6 +88,7 @@ bool trace_pixels(const manifest::Document& document, std::vector<TracedPixels>&
     if (caustics == Caustics::refused && integrator->traces_from_lights()) return false;
     picture.radiance.assign(3 * picture.at.size(), 0.0);
     picture.variance.assign(3 * picture.at.size(), 0.0);
+    picture.stokes.assign(light == Light::polarized ? 9 * picture.at.size() : 0, 0.0);
     const std::uint64_t own = render::seed_of(seed, scene.views[picture.entry].image);
     trace_picture(*integrator, scene.views[picture.entry], plan, own, picture);
   }

@@ -23,7 +23,10 @@ std::span<const ColumnCondition> known_conditions() {
                                                      {"phi_o", "surface.exitance-azimuth", "rad", "surface"},
                                                      {"row", "camera.image-y", "px", "sensor"},
                                                      {"channel", "image.channel", "1", "sensor"},
-                                                     {"lamp", "light.identity", "1", "light"}};
+                                                     {"lamp", "light.identity", "1", "light"},
+                                                     {"polarizer", "polarimeter.polarizer", "rad", "sensor"},
+                                                     {"analyser", "polarimeter.analyser", "rad", "sensor"},
+                                                     {"retarder", "polarimeter.retarder", "rad", "optics"}};
   return known;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "explain/images/traced.h"
+#include "explain/traced/nodes.h"
 #include "explain/traced/takes.h"
 #include "manifest/document.h"
 #include "manifest/sections/surface.h"
@@ -19,26 +20,6 @@ constexpr std::uint64_t seed = 83;
 constexpr double of_nodes = 0.1, of_fine_nodes = 0.25;  // of the paths of the scene as it was given
 constexpr double dark = 2e-3;                           // of the brightest
 constexpr std::size_t places_of_mean = 48;              // that stand for a surface
-
-// The cubic between the nodes beside x, with the slopes of parabolas through three nodes; straight on beyond.
-double between(const std::vector<double>& nodes, std::span<const double> y, double x) {
-  const std::size_t n = nodes.size();
-  if (n == 1) return y[0];
-  const auto secant = [&](std::size_t k) { return (y[k + 1] - y[k]) / (nodes[k + 1] - nodes[k]); };
-  const auto slope = [&](std::size_t k) {
-    if (n == 2) return secant(0);
-    const std::size_t m = std::clamp<std::size_t>(k, 1, n - 2);
-    const double before = nodes[m] - nodes[m - 1], after = nodes[m + 1] - nodes[m];
-    const double middle = (secant(m - 1) * after + secant(m) * before) / (before + after);
-    return k == m ? middle : k < m ? 2 * secant(0) - middle : 2 * secant(n - 2) - middle;
-  };
-  if (x <= nodes.front()) return y[0] + slope(0) * (x - nodes.front());
-  if (x >= nodes.back()) return y[n - 1] + slope(n - 1) * (x - nodes.back());
-  const auto k = static_cast<std::size_t>(std::upper_bound(nodes.begin(), nodes.end(), x) - nodes.begin()) - 1;
-  const double h = nodes[k + 1] - nodes[k], t = (x - nodes[k]) / h;
-  const double a = slope(k) * h, b = slope(k + 1) * h, d = y[k + 1] - y[k];
-  return y[k] + t * (a + t * (3 * d - 2 * a - b + t * (a + b - 2 * d)));
-}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
-// sensor.crosstalk: the three bands of one pixel.
+// sensor.crosstalk: the three bands of one pixel; behind polarizers a sample and those beside it.
 #include "render/mechanisms/sensor_crosstalk.h"
 
+#include "photograph/polarizer_array.h"
 #include "render/link.h"
 
 namespace gonio::render::links {
@@ -16,10 +17,15 @@ OnPicture mix(std::span<const double> p, double) {
   };
 }
 
+void share(std::span<const double> p, photograph::PolarizerArray& array) {
+  array.share = p[0];
+}
+
 }  // namespace
 
 const Link& sensor_crosstalk() {
-  static const Link link{.mechanism = mechanism::sensor_crosstalk, .step = Step::optics, .order = 40, .picture = mix};
+  static const Link link{
+      .mechanism = mechanism::sensor_crosstalk, .step = Step::optics, .order = 40, .picture = mix, .polarizers = share};
   return link;
 }
 

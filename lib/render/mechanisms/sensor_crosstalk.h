@@ -1,4 +1,4 @@
-// sensor.crosstalk on one band of three.
+// sensor.crosstalk on one band of three, or on one sample of a polarization camera.
 #pragma once
 #include "mechanism/mechanism.h"
 
@@ -8,9 +8,9 @@ const Mechanism& sensor_crosstalk();
 
 namespace gonio::equation {
 
-// `sum` of all bands.
-inline double sensor_crosstalk(double v, double share, double sum) {
-  return (1 - 3 * share) * v + share * sum;
+// `sum` of all bands; or of a sample and those beside it, `count` in all.
+inline double sensor_crosstalk(double v, double share, double sum, double count = 3) {
+  return (1 - count * share) * v + share * sum;
 }
 
 }  // namespace gonio::equation

@@ -13,7 +13,7 @@ const Mechanism& surface_roughness() {
       .source = "Walter et al. 2007, section 5.2 (alpha and slopes)",
       .stage = "surface",
       .target = Target::surface,
-      .domains = {"traced"},
+      .domains = {"traced", "polarization"},
       .parameters = {{.name = "more",
                       .unit = "1",
                       .neutral = 0,

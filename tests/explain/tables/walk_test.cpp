@@ -102,6 +102,17 @@ World ellipsometer() {
   return rows_of({{"theta_i", "rad"}, {"wavelength_m", "m"}, {"substrate_n", "1"}, {"psi", "rad"}, {"delta", "rad"}},
                  300, "", R"("model": "ellipsometer", "observed": ["psi", "delta"])", usual);
 }
+World polarimeter() {
+  return rows_of({{"theta_i", "rad"},
+                  {"wavelength_m", "m"},
+                  {"polarizer", "rad"},
+                  {"retarder", "rad"},
+                  {"retardance", "rad"},
+                  {"analyser", "rad"},
+                  {"mirror_n", "1"},
+                  {"value", "1"}},
+                 300, "", R"("model": "polarimeter", "observed": ["value"])", usual);
+}
 World tracker() {
   World w = rows_of({{"nominal_x_m", "m"},
                      {"nominal_y_m", "m"},
@@ -202,6 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
         Walk{"light", light, no_shadows}, Walk{"parallel", parallel_light, no_shadows},
         Walk{"volume", volume, {"image.exposure"}}, Walk{"refraction", refraction, {"image.exposure"}},
         Walk{"ellipsometer", ellipsometer, {"surface.wavelength", "surface.difference-angle", "surface.half-angle"}},
+        Walk{"polarimeter", polarimeter, {"light.polarized-part", "light.polarized-across"}},
         Walk{"tracker", tracker, {}}, Walk{"arm", arm, {}},
         Walk{"surface", surface, {"surface.spatial-frequency", "surface.lay-azimuth"}},
         // Centres of markers have no edges and throw no shadows; a volume's walls are not there.
