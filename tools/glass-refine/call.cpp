@@ -78,7 +78,7 @@ std::string table_of(const Refined& refined, double index_sigma) {
   return text;
 }
 
-void enter_comparison(manifest::Document& document, std::size_t image, const View& view, double before, double after) {
+void enter_comparison(manifest::Document& document, const View& view, double before, double after) {
   manifest::Comparison comparison;
   comparison.image = view.id;
   comparison.rmse = after * view.screen->mean_luminance();
@@ -87,9 +87,9 @@ void enter_comparison(manifest::Document& document, std::size_t image, const Vie
   for (const float d : view.outline_px) pixels += d > 0 ? 1 : 0;
   comparison.pixels = pixels;
   document.comparisons.push_back(std::move(comparison));
-  log(LogLevel::info, format("image %zu, kept out: the rendering with the hull differs from the photograph by %.3f of "
+  log(LogLevel::info, format("%s, kept out: the rendering with the hull differs from the photograph by %.3f of "
                              "the screen's mean, with the refined body by %.3f",
-                             image, before, after));
+                             view.id.c_str(), before, after));
 }
 
 void write_maps(cli::Invocation& call, const Refined& refined, const Measuring& measuring, std::size_t views) {
@@ -183,7 +183,7 @@ Exit run(cli::Invocation& call) {
   write_file(table, table_of(refined, refined.index_sigma));
   manifest::add_file(call.document, table, "stages");
   enter_body(call.document, refined.best(), refined.index_sigma, name_of_body, call.out / "refined.ply");
-  if (call.integer("spp") > 0) enter_comparison(call.document, image, views[image], before, after);
+  if (call.integer("spp") > 0) enter_comparison(call.document, views[image], before, after);
   if (wish.light && refined.index_sigma == 0)
     log(LogLevel::warning,
         "two refractions do not explain the view that was kept out any better: the answer is that of "

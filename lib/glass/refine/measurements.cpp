@@ -134,6 +134,22 @@ double Measuring::floor_cost(const Asked& asked, const Measurement& m, Rows* row
   return r * r;
 }
 
+double Measuring::outline_misfit_px(const Asked& asked, std::span<const Measurement> measurements) const {
+  std::vector<double> off;
+  for (const Measurement& m : measurements) {
+    const View& view = views_[m.view];
+    const double outline = m.kind == Kind::outline ? view.outline_px[view.pixel(m.x, m.y)] : 2 * band_px;
+    if (std::abs(outline) > band_px) continue;
+    const PixelRay line = ray(asked.field, m.view, m.x, m.y);
+    const Passage through = passage(asked.field, line.origin, line.direction);
+    if (through.meets_grid) off.push_back(std::abs(through.greatest * view.focal_px / through.at - outline));
+  }
+  if (off.empty()) return 0;
+  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+  std::nth_element(off.begin(), middle, off.end());
+  return 1.4826 * *middle;  // of a Gaussian
+}
+
 double Measuring::outline_cost(const Asked& asked, const Measurement& m, Rows* rows) const {
   const View& view = views_[m.view];
   const PixelRay line = ray(asked.field, m.view, m.x, m.y);

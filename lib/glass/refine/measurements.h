@@ -30,7 +30,7 @@ struct Measurement {
 };
 
 struct Sigmas {
-  double outline_px = 0.35;
+  double outline_px = 0.35;  // at least; masks that contradict each other have more
   // Of a prediction, as a share of the screen's mean: what two refractions leave out. Neighbours err alike.
   double light_share = 0.15;
   double normals_px = 5;    // a network's errors hang together over so many pixels
@@ -57,6 +57,10 @@ class Measuring {
     double blur_px = 1;
   };
   double cost(const Asked& asked, const Measurement& measurement, double& variance, Rows* rows) const;
+  // How far outlines are off, in pixels, as the standard deviation that their median speaks for: what masks that
+  // contradict each other leave, whatever the body.
+  double outline_misfit_px(const Asked& asked, std::span<const Measurement> measurements) const;
+  void set_outline_sigma(double px) { sigmas_.outline_px = px; }
   // Mean over the pixels of a view of the bounded cost of the light, 0 to 1: explained not at all.
   double unexplained(const Asked& asked, std::size_t view) const;
 

@@ -1,6 +1,7 @@
 // See refine.h.
 #include "glass/refine/refine.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -98,6 +99,9 @@ class Refinement {
       told.insert(told.end(), floor.begin(), floor.end());
     }
     descend("outline", told, 1, 6);
+    const Stage& smooth = refined_.stages.back();
+    measuring_.set_outline_sigma(
+        std::max(wish_.sigmas.outline_px, measuring_.outline_misfit_px({smooth.field, smooth.glass, 1}, told)));
     if (!normals.empty()) {
       told.insert(told.end(), normals.begin(), normals.end());
       descend("normals", told, 1, 8);

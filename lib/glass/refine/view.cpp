@@ -146,7 +146,7 @@ void add_network(View& view, const io::Image& picture, const fs::path& path, con
 }
 
 Plane outline_mask(const manifest::Document& document, std::size_t image, const std::optional<io::Image>& network,
-                int width, int height) {
+                   int width, int height) {
   const fs::path path = manifest::mask_path(document, image);
   Plane mask;
   if (!path.empty()) {
