@@ -147,7 +147,7 @@ TEST(Mosaics, AnswersAreWrittenIntoTheManifest) {
   problem->apply(e, document);
   EXPECT_NEAR(document.lights.at("screen").parameters.at("polarization_degree").scalar(), 0.98 * 0.95 / 1.05, 1e-12);
   EXPECT_NEAR(document.lights.at("screen").parameters.at("polarization_rad").scalar(), 0.7, 1e-12);
-  EXPECT_NEAR(document.surfaces.at("metal").parameters.at("alpha").scalar(), 0.2, 1e-12);
+  EXPECT_NEAR(document.surfaces.at("glass").parameters.at("alpha").scalar(), 0.2, 1e-12);
   EXPECT_EQ(document.mechanisms.at("polarizer.leak").parameters.at("leak").value.at(0), 0.03);
   EXPECT_EQ(document.mechanisms.at("polarizer.leak").on, std::vector<std::string>{"c"});
 }
