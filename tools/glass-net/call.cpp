@@ -90,7 +90,11 @@ void turn_normals(io::Image& answer, const Mat3& world_from_camera) {
   }
 }
 
-Looked look_at(cli::Invocation& call, const Weights& weights, const Photograph& photograph) {
+struct Answered {
+  Looked looked;
+  io::Image full;  // as many pixels as the photograph
+};
+Answered look_at(cli::Invocation& call, const Weights& weights, const Photograph& photograph) {
   const std::string place = photograph.path.string();
   call.note_input(photograph.path);
   const io::Image picture = read_photograph(call, photograph.path, weights.input);
@@ -98,12 +102,14 @@ Looked look_at(cli::Invocation& call, const Weights& weights, const Photograph& 
   Planes seen = seen_of(picture, weights.input, shrink, place);
   in_mean_light(seen, weights.input, place);
   const io::Image answer = answer_of(weights, seen, static_cast<int>(call.integer("tile")));
-  Looked looked{photograph.id, io::Image(static_cast<int>(seen.width), static_cast<int>(seen.height), {"Y"}),
+  Answered made{{photograph.id, io::Image(answer.width, answer.height, {"Y"}),
+                 as_photographed(answer, 1, answer.width, answer.height)},
                 as_photographed(answer, shrink, picture.width, picture.height)};
-  std::copy_n(seen.plane(0), seen.pixels(), looked.light.data.begin());
-  if (photograph.image && call.document.images[*photograph.image].world_from_camera)
-    turn_normals(looked.answer, matrix_of(call.document.images[*photograph.image].world_from_camera->rotation));
-  return looked;
+  std::copy_n(seen.plane(0), seen.pixels(), made.looked.light.data.begin());
+  if (!photograph.image || !call.document.images[*photograph.image].world_from_camera) return made;
+  const Mat3 world_from_camera = matrix_of(call.document.images[*photograph.image].world_from_camera->rotation);
+  turn_normals(made.looked.answer, world_from_camera), turn_normals(made.full, world_from_camera);
+  return made;
 }
 
 void enter(cli::Invocation& call, const Photograph& photograph, const fs::path& answer) {
@@ -199,9 +205,10 @@ Exit run(cli::Invocation& call) {
   Progress progress("photographs", photographs.size());
   for (const Photograph& photograph : photographs) {
     throw_if_interrupted();
-    all.push_back(look_at(call, weights, photograph));
+    Answered made = look_at(call, weights, photograph);
     const fs::path path = call.output_path(photograph.id + ".exr");
-    io::write_picture(path, all.back().answer);
+    io::write_picture(path, made.full);
+    all.push_back(std::move(made.looked));
     enter(call, photograph, path);
     log(LogLevel::info, summary_of(all.back()));
     progress.advance();

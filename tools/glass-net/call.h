@@ -12,10 +12,10 @@ std::vector<cli::Option> options();
 void check(cli::Invocation& call);
 Exit run(cli::Invocation& call);
 
-struct Looked {  // at one photograph
+struct Looked {  // at one photograph; pixels are the network's
   std::string id;
-  io::Image light;   // what there is to see, one channel or three
-  io::Image answer;  // glass/net/answer.h, as photographed
+  io::Image light;   // the first plane of what it saw
+  io::Image answer;  // glass/net/answer.h, as_photographed
 };
 // What is worth a line: share of the pixels that show glass, medians of the uncertainties there.
 std::string summary_of(const Looked& looked);

@@ -55,7 +55,8 @@ std::string summary_of(const Looked& looked) {
 }
 
 std::string page_of(const std::vector<Looked>& all, const std::string& weights) {
-  report::Page page("glass-net", format("%zu photographs of glass", all.size()), "weights: " + weights);
+  report::Page page("glass-net", format("%zu photograph%s of glass", all.size(), all.size() == 1 ? "" : "s"),
+                    "weights: " + weights);
   page.note(
       "Normals: 0.5 + 0.5 n, x red, y green, z blue; depth from the nearest (dark) to the farthest; uncertainties "
       "from none (black) to the largest hundredth (white).");
@@ -69,9 +70,11 @@ std::string page_of(const std::vector<Looked>& all, const std::string& weights) 
     add("light", render::preview(looked.light));
     add("mask", grey(looked.answer, "mask"));
     for (const auto& [layer, picture] : render::layer_previews(looked.answer)) add(layer, picture);
-    for (const std::string& channel : looked.answer.channels)
-      if (channel.starts_with("uncertainty.")) add(channel, grey(looked.answer, channel));
-    page.figures(figures, 220);
+    for (const auto& [layer, channel] : {std::pair{"depth +-", "uncertainty.depth.Z"},
+                                         {"normal +-", "uncertainty.normal"},
+                                         {"back-normal +-", "uncertainty.back_normal"}})
+      if (looked.answer.channel(channel) >= 0) add(layer, grey(looked.answer, channel));
+    page.figures(figures, 240);
   }
   return page.html();
 }
