@@ -24,7 +24,7 @@ $(PARTS_LIST:%=run/part-%.json): run/part-%.json: | run
 > $(MAKE_GLASS) --shard $*/$(PARTS) -o $@
 
 run/set.json: $(PARTS_LIST:%=run/part-%.json)
-> $(MAKE_GLASS) --gather --force -o $@
+> $(MAKE_GLASS) --gather -o $@
 
 run:
 > mkdir -p run

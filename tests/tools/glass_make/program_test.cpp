@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 
@@ -54,6 +55,13 @@ TEST_F(GlassMake, IsTheSameWhicheverWayItIsMade) {
     ASSERT_EQ(call(small("parts"), {"--threads", "3", "--shard", part, "-o", "part.json"}).status, 0) << part;
   ASSERT_EQ(call(small("parts"), {"--gather", "-o", "parts.json"}).status, 0);
   EXPECT_EQ(bytes_below("parts"), bytes_below("whole"));
+  const std::string makefile = std::string(GONIO_SOURCE) + "/scripts/experiments/glass.mk";
+  const Ended made = call(
+      {"env", std::string("PATH=") + GONIO_BIN + ":" + std::getenv("PATH"), "make", "-j2", "-f", makefile, "OBJECTS=2",
+       "VIEWS=2", "SIZE=32x32", "NOISE=60%", "SPP=16", "PARTS=3", "MORE=--form lathe --form bottle --log-level error"},
+      {});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(bytes_below("run/set"), bytes_below("whole"));
   const manifest::Document whole = manifest::read_document(path("whole.json"));
   EXPECT_TRUE(whole.files.contains("cells"));
   EXPECT_TRUE(whole.files.contains("training-front"));
