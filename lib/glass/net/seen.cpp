@@ -37,20 +37,6 @@ io::Image chosen(const io::Image& picture, const std::vector<std::string>& names
   return part;
 }
 
-// s0, s1, s2 of a picture that has them, as one band; no values where it has none.
-Planes stokes_of_picture(const io::Image& picture) {
-  const io::Image one_band = chosen(picture, {"Y", "s1.Y", "s2.Y"}, {"Y", "s1.Y", "s2.Y"});
-  if (one_band.pixels() > 0) return planes_of(one_band);
-  Planes planes{3, static_cast<std::size_t>(picture.height), static_cast<std::size_t>(picture.width), {}};
-  for (const std::string prefix : {"", "s1.", "s2."}) {
-    const io::Image bands = chosen(picture, {prefix + "R", prefix + "G", prefix + "B"}, {"R", "G", "B"});
-    if (bands.pixels() == 0) return {};
-    const io::Image light = render::luminance(bands);
-    planes.values.insert(planes.values.end(), light.data.begin(), light.data.end());
-  }
-  return planes;
-}
-
 Planes intensities_of_stokes(const Planes& stokes) {
   Planes behind{degrees.size(), stokes.height, stokes.width, std::vector<float>(degrees.size() * stokes.pixels())};
   for (std::size_t k = 0; k < degrees.size(); ++k)
@@ -110,6 +96,19 @@ struct Alternating {
 };
 
 }  // namespace
+
+Planes stokes_of_picture(const io::Image& picture) {
+  const io::Image one_band = chosen(picture, {"Y", "s1.Y", "s2.Y"}, {"Y", "s1.Y", "s2.Y"});
+  if (one_band.pixels() > 0) return planes_of(one_band);
+  Planes planes{3, static_cast<std::size_t>(picture.height), static_cast<std::size_t>(picture.width), {}};
+  for (const std::string prefix : {"", "s1.", "s2."}) {
+    const io::Image bands = chosen(picture, {prefix + "R", prefix + "G", prefix + "B"}, {"R", "G", "B"});
+    if (bands.pixels() == 0) return {};
+    const io::Image light = render::luminance(bands);
+    planes.values.insert(planes.values.end(), light.data.begin(), light.data.end());
+  }
+  return planes;
+}
 
 Planes stokes_of_mosaic(const io::Image& mosaic) {
   const std::vector<float> variance(mosaic.pixels(), 1);

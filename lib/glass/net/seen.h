@@ -26,6 +26,8 @@ struct Planes {
 // its pixels.
 Planes stokes_of_mosaic(const io::Image& mosaic);
 Planes intensities_of_mosaic(const io::Image& mosaic);
+// s0, s1, s2 of a picture that states them, bands as their luminance; no values where it does not.
+Planes stokes_of_picture(const io::Image& picture);
 
 // "rgb", "stokes" or "intensities" of a picture, each block of `shrink` x `shrink` pixels (what is left over at the
 // right and below is not seen) as its mean. Error(data) at `place` where the picture does not say that.

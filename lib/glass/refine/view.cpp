@@ -35,28 +35,22 @@ Plane plane_of(const io::Image& picture, int channel) {
   return plane;
 }
 
-// Luminance of PREFIX.R, .G, .B or the plane PREFIX.Y; empty where there is neither.
-Plane light_plane(const io::Image& picture, const std::string& prefix) {
-  if (const int y = picture.channel(prefix + "Y"); y >= 0) return plane_of(picture, y);
-  const int r = picture.channel(prefix + "R"), g = picture.channel(prefix + "G"), b = picture.channel(prefix + "B");
-  if (r < 0 || g < 0 || b < 0) return {};
-  const Plane red = plane_of(picture, r), green = plane_of(picture, g), blue = plane_of(picture, b);
-  Plane plane(red.size());
-  for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = 0.2126f * red[i] + 0.7152f * green[i] + 0.0722f * blue[i];
-  return plane;
+std::array<Plane, 3> three(const Planes& planes) {
+  std::array<Plane, 3> apart;
+  for (std::size_t k = 0; k < apart.size() && !planes.values.empty(); ++k)
+    apart[k].assign(planes.plane(k), planes.plane(k) + planes.pixels());
+  return apart;
 }
 
 std::array<Plane, 3> stokes_of(const io::Image& picture, bool behind_polarizers, const manifest::Document& document,
                                std::size_t image) {
-  std::array<Plane, 3> stokes = stokes_planes(picture);
-  if (!stokes[1].empty() && !stokes[2].empty()) return stokes;
-  if (!behind_polarizers || stokes[0].empty())
+  const std::array<Plane, 3> stokes = stokes_planes(picture);
+  if (!stokes[0].empty()) return stokes;
+  if (!behind_polarizers || picture.channel("Y") < 0)
     refuse(document, image, "has neither Stokes planes s1, s2 nor a camera with \"mosaic\": \"polarizers\"",
            "photograph it with a polarization camera, or render it with --stokes");
   demand_mosaic(picture, manifest::place(document, "/images/" + std::to_string(image)));
-  const Planes found = stokes_of_mosaic(picture);
-  for (std::size_t k = 0; k < 3; ++k) stokes[k].assign(found.plane(k), found.plane(k) + found.pixels());
-  return stokes;
+  return three(stokes_of_mosaic(picture));
 }
 
 // The scene behind the document. One without objects has none that a renderer could build: it gets a speck.
@@ -210,7 +204,7 @@ std::vector<float> reduced(const std::vector<float>& plane, int width, int heigh
 }
 
 std::array<std::vector<float>, 3> stokes_planes(const io::Image& picture) {
-  return {light_plane(picture, ""), light_plane(picture, "s1."), light_plane(picture, "s2.")};
+  return three(stokes_of_picture(picture));
 }
 
 Vec3 View::direction(double x, double y) const {

@@ -55,8 +55,7 @@ struct View {
 // Distance of each pixel's centre from where `mask` passes one half, in pixels, positive where it is more.
 std::vector<float> distance_from_edge(const std::vector<float>& mask, int width, int height);
 
-// s0, s1, s2 as a monochrome sensor has them, of a picture with planes R, G, B, s1.R ... or Y, s1.Y, s2.Y; empty ones
-// where it lacks them.
+// s0, s1, s2 as a monochrome sensor has them, of a picture with planes R, G, B, s1.R ... or Y, s1.Y, s2.Y; else empty.
 std::array<std::vector<float>, 3> stokes_planes(const io::Image& picture);
 // Means of `factor` x `factor` pixels; what is left over at the right and below is dropped.
 std::vector<float> reduced(const std::vector<float>& plane, int width, int height, int factor);
