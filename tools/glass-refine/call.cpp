@@ -154,6 +154,8 @@ std::vector<cli::Option> options() {
 }
 
 void check(cli::Invocation& call) {
+  if (call.given("MANIFEST") && !call.text("MANIFEST").ends_with(".json"))
+    throw Error(Exit::usage, call.text("MANIFEST"), "is no manifest", "name a file that ends in .json");
   if (call.out.empty()) throw Error(Exit::usage, "--out", "is missing", "name the folder of the answer");
   held_out(call);
   if (call.given("network")) {
