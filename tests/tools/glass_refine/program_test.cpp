@@ -96,6 +96,7 @@ TEST_F(GlassRefine, RefusesWhatMakesNoSense) {
   expect_refused({"set/object-0.json"}, 64, "--out");
   expect_refused({"--out", "x", "set/object-0.json", "--hold-out", "view-9"}, 64, "view-9");
   expect_refused({"--out", "x", "set/object-0.json", "--index", "1"}, 64, "--index");
+  expect_refused({"--out", "x", "set/report.html"}, 64, "is no manifest");
   expect_refused({"--out", "x", "set/object-0.json", "--network", "nowhere"}, 66, "nowhere");
   expect_refused({"--out", "x", "set/object-0.json", "--network", "set"}, 66, "IMAGE.exr");
   const std::string few = changed("few.json", [](manifest::Document& d) { d.images.resize(3); });
