@@ -18,13 +18,28 @@ namespace {
 // Streams of random numbers under the set's seed.
 enum : std::uint64_t { split_stream = 1, object_stream = 2, view_stream = 3 };
 
-std::vector<Share> split(std::size_t groups, std::uint64_t seed) {
-  std::vector<std::size_t> order(groups);
-  std::iota(order.begin(), order.end(), std::size_t{0});
+// Shuffles by `random`.
+template <class Values>
+void shuffle(Values& values, Random& random) {
+  for (std::size_t i = values.size(); i > 1; --i)
+    std::swap(values[i - 1], values[random.below(static_cast<std::uint32_t>(i))]);
+}
+
+// A tenth of the groups, to the nearest whole, is for the test and as many for validation. Group i is of kind i % kinds;
+// a share has as many of each kind as of any other, but for one: what is calibrated on a share that has too many of a
+// difficult kind errs elsewhere.
+std::vector<Share> split(std::size_t groups, std::size_t kinds, std::uint64_t seed) {
   Random random(seed, split_stream);
-  for (std::size_t i = groups; i > 1; --i) std::swap(order[i - 1], order[random.below(static_cast<std::uint32_t>(i))]);
+  std::vector<std::vector<std::size_t>> of_kind(kinds);
+  for (std::size_t i = 0; i < groups; ++i) of_kind[i % kinds].push_back(i);
+  for (auto& kind : of_kind) shuffle(kind, random);
+  shuffle(of_kind, random);
+  std::vector<std::size_t> order;  // one of each kind, again and again
+  for (std::size_t turn = 0; order.size() < groups; ++turn)
+    for (const auto& kind : of_kind)
+      if (turn < kind.size()) order.push_back(kind[turn]);
   std::vector<Share> shares(groups, Share::training);
-  const std::size_t held = (groups + 5) / 10;  // a tenth, to the nearest whole, for each
+  const std::size_t held = (groups + 5) / 10;
   for (std::size_t i = 0; i < std::min(2 * held, groups); ++i)
     shares[order[i]] = i < held ? Share::test : Share::validation;
   return shares;
@@ -51,8 +66,8 @@ GlassSet::GlassSet(SetWish wish, std::filesystem::path folder) : wish_(std::move
   std::vector<std::size_t> group;
   for (const auto& path : wish_.meshes)
     group.push_back(known.emplace(sha256_of_file(path), known.size()).first->second);
-  const std::size_t groups = wish_.meshes.empty() ? wish_.objects : std::min(known.size(), wish_.objects);
-  const std::vector<Share> of_group = split(wish_.meshes.empty() ? groups : known.size(), wish_.seed);
+  const std::vector<Share> of_group = wish_.meshes.empty() ? split(wish_.objects, wish_.forms.size(), wish_.seed)
+                                                           : split(known.size(), 1, wish_.seed);
   for (std::size_t i = 0; i < wish_.objects; ++i)
     shares_.push_back(of_group[wish_.meshes.empty() ? i : group[i % group.size()]]);
 }
@@ -81,7 +96,7 @@ Cell GlassSet::cell(std::size_t number) const {
     throw Error(Exit::usage, "--cell", format("%zu is none of %zu, counted from 0", number, cells()));
   Cell cell;
   cell.number = number, cell.object = number / wish_.views, cell.view = number % wish_.views;
-  cell.share = shares_[cell.object];
+  cell.share = share_of(cell.object);
   const MadeObject& made = object(cell.object).made;
   cell.facts = made.facts;
   Random random(split_mix(split_mix(wish_.seed) ^ cell.object) ^ cell.view, view_stream);

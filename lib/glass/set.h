@@ -5,7 +5,8 @@
 // order: the bytes are the same. A cell's name is its content's: 16 hexadecimal digits of the SHA-256 of its scene
 // (which states the hashes of its files) and of how it is rendered.
 //
-// Objects are split into training, validation and test, never the views of one; bodies from one file stay together.
+// Objects are split into training, validation and test, never the views of one; each form is in each share as often as
+// any other; bodies from one file stay together.
 //
 // World: z up, the table z = 0, the object's turntable at the origin, the screen behind it across +y, cameras on an arc
 // about it on the side of -y.
@@ -51,6 +52,7 @@ class GlassSet {
   GlassSet(SetWish wish, std::filesystem::path folder);
   std::size_t cells() const { return wish_.objects * wish_.views; }
   Cell cell(std::size_t number) const;
+  Share share_of(std::size_t object) const { return shares_.at(object); }
   const SetWish& wish() const { return wish_; }
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path folder_of(const Cell& cell) const { return folder_ / "cells" / cell.name; }

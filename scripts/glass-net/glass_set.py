@@ -1,4 +1,5 @@
 """Sets of glass-make(1) as tensors: mapped into memory, cells drawn without a copy of the rest."""
+import csv
 import hashlib
 import sys
 from pathlib import Path
@@ -22,7 +23,7 @@ class Share:
     def __init__(self, folder, share, kind, light):
         if kind not in INPUTS or light not in LIGHTS:
             fail(f"{kind}-{light} is no input: one of {', '.join(INPUTS)}, with {' or '.join(LIGHTS)}", 64)
-        self.kind = kind
+        self.folder, self.share, self.kind = Path(folder), share, kind
         self.paths = {name: Path(folder) / "tensors" / f"{share}-{name}.npy"
                       for name in (f"{kind}-{light}", "mask", "depth", "front", "back")}
         arrays = {}
@@ -49,6 +50,18 @@ class Share:
         seen = torch.from_numpy(numpy.ascontiguousarray(self.input[cells]))
         truth = {name: torch.from_numpy(numpy.ascontiguousarray(array[cells])) for name, array in self.truth.items()}
         return in_mean_light(seen, self.kind), truth
+
+    def objects(self):
+        """The number of each cell's object, in the order of the cells."""
+        path = self.folder / "cells.csv"
+        try:
+            with open(path, newline="") as file:
+                numbers = [int(row["object"]) for row in csv.DictReader(file) if row["share"] == self.share]
+        except OSError as error:
+            fail(f"{path}: {error.strerror or error}; glass-make --gather writes it", 66)
+        if len(numbers) != len(self):
+            fail(f"{path}: has {len(numbers)} cells for {self.share}, the tensors have {len(self)}")
+        return numbers
 
     def fingerprint(self):
         """Of the files' heads and sizes, and of their first cells: which set it was."""

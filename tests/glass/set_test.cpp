@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <set>
 
 #include "base/atomic_file.h"
@@ -71,6 +72,23 @@ TEST(GlassSet, IsSplitByObject) {
   EXPECT_EQ(count[Share::test], 4u);
   EXPECT_EQ(count[Share::validation], 4u);
   EXPECT_EQ(count[Share::training], 32u);
+}
+
+// Each form is in each share as often as any other, but for one. 203 objects: forms and shares of uneven sizes.
+TEST(GlassSet, IsSplitByForm) {
+  const GlassSet set(small(203, 1), empty_folder("set-forms"));
+  std::map<Share, std::map<std::string, std::size_t>> count;
+  const std::vector<std::string>& forms = set.wish().forms;
+  for (std::size_t n = 0; n < set.cells(); ++n) ++count[set.share_of(n)][forms[n % forms.size()]];
+  std::map<Share, std::size_t> whole;
+  for (const auto& [share, of_form] : count) {
+    EXPECT_EQ(of_form.size(), forms.size());
+    const auto [least, most] = std::ranges::minmax(of_form | std::views::values);
+    EXPECT_LE(most - least, 1u) << name_of(share);
+    for (const std::size_t n : of_form | std::views::values) whole[share] += n;
+  }
+  EXPECT_EQ(whole[Share::test], 20u);
+  EXPECT_EQ(whole[Share::validation], 20u);
 }
 
 // Twenty files of ten contents: what is the same stays together.

@@ -114,7 +114,8 @@ TEST_F(GlassNet, RunsBecomeATable) {
   const Ended ended = run(table, path("."));
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, testing::HasSubstr("front alone, light: lit, loss: scales"));
-  EXPECT_THAT(ended.out, testing::HasSubstr("by intensities"));
+  EXPECT_THAT(ended.out, testing::HasSubstr("Against RGB (over seeds and objects; 95 % interval; p after Holm over"));
+  EXPECT_THAT(ended.out, testing::ContainsRegex("front alone, lit: front / deg by intensities: [0-9.]+ \\("));
   EXPECT_THAT(read_file(path("table.csv")), testing::HasSubstr("lit,scales,front alone,rgb,mask_l1,2,"));
   EXPECT_EQ(run({(scripts / "table").string()}, path(".")).status, 64);
   EXPECT_EQ(run({(scripts / "table").string(), "set.json"}, path(".")).status, 65);
