@@ -7,10 +7,11 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "data.h"
 #include "glass/glasses.h"
 #include "glass/implicit.h"
-#include "io/encode_ply.h"
 #include "glass/object.h"
+#include "io/encode_ply.h"
 #include "mesh/inside.h"
 #include "mesh/mesh.h"
 #include "mesh/topology.h"
@@ -98,7 +99,8 @@ TEST(Bodies, FillingsStayWithinTheWall) {
 }
 
 TEST(Bodies, FilesThatBoundNothingAreRefused) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "open.ply";
+  const tests::ScratchFolder folder;
+  const auto path = folder / "open.ply";
   io::TriangleMesh open;
   open.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   open.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}};

@@ -82,6 +82,11 @@ TEST(MosaicEvidence, OtherPicturesAreRefused) {
   }
   for (const char* filters : {"RGGB", "GRBG", "GBRG", "BGGR"})
     expect_refused(render::bayer_mosaic(coloured, filters), "is no mosaic of polarizers");
+  // A mask: its edges look polarized as often as not.
+  io::Image mask(32, 32, {"Y"});
+  for (int y = 9; y < 23; ++y)
+    for (int x = 5; x < 20; ++x) mask.at(x, y, 0) = 1;
+  EXPECT_THROW(demand_mosaic(mask, "mask"), Error);
   EXPECT_THROW(demand_mosaic(io::Image(64, 64, {"Y"}), "dark"), Error);
 }
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "glass/glasses.h"
 #include "glass/make_cell.h"
 #include "glass/refine/answer.h"
@@ -99,6 +102,21 @@ void add_stand_in(World& world, double front_deg, double back_deg, double reach_
     }
     view.network = std::move(answer);
   }
+}
+
+void ask_network(World& world, const std::filesystem::path& weights, bool masks, const std::filesystem::path& folder) {
+  const std::filesystem::path asked = folder / "asked.json", answers = folder / "network";
+  write_file(asked, manifest::print_document(world.document, folder));
+  const char* program = std::getenv("GLASS_NET");
+  const auto quoted = [](const std::filesystem::path& path) { return " '" + path.string() + "'"; };
+  const std::string call = std::string(program ? program : "glass-net") + " --log-level error --force --weights" +
+                           quoted(weights) + " --out" + quoted(answers) + " -o" + quoted(folder / "answered.json") +
+                           quoted(asked);
+  if (std::system(call.c_str()) != 0) throw Error(Exit::data, call, "failed");
+  manifest::Document document = world.document;
+  if (masks)
+    for (manifest::ImageEntry& image : document.images) image.mask.clear();
+  world.views = views_in(document, {.network = answers});
 }
 
 void shake_masks(World& world, double sigma_px, std::uint64_t seed) {

@@ -32,6 +32,10 @@ World make_world(const WorldWish& wish, const std::filesystem::path& folder);
 // The truth turned by a smooth random rotation vector; rms angle `front_deg`, `back_deg`, stated as sigma. Errors hang
 // together over `reach_px`.
 void add_stand_in(World& world, double front_deg, double back_deg, double reach_px, std::uint64_t seed);
+// What glass-net(1) says with the weights in a folder, called as a person calls it (GLASS_NET in the environment names
+// the program, else it is looked for); with `masks` of its own the outlines are the network's, too. `folder` is the
+// world's.
+void ask_network(World& world, const std::filesystem::path& weights, bool masks, const std::filesystem::path& folder);
 // Outlines as a network draws them: displaced by a smooth random distance of this standard deviation.
 void shake_masks(World& world, double sigma_px, std::uint64_t seed);
 

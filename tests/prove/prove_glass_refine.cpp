@@ -3,6 +3,7 @@
 //
 //   prove-glass-refine FOLDER [--form NAME]... [--seeds A B] [--objects N] [--views N] [--size PX] [--spp N]
 //     [--front DEG] [--back DEG] [--shake PX] [--as-made]
+//     [--weights DIR [--network-masks]]   glass-net(1) with these instead of the stand-in
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -22,11 +23,19 @@ struct Sums {
   double hull_front = 0, hull_back = 0, within = 0, within_two = 0, beyond = 0;
 };
 
-void measure(const WorldWish& wish, const std::filesystem::path& folder, double front_deg, double back_deg,
-             double shake_px, Sums& sums) {
+struct Said {  // of the views, before physics
+  double front_deg = 22, back_deg = 32, shake_px = 0;
+  std::filesystem::path weights{};  // none: a stand-in
+  bool network_masks = false;
+};
+
+void measure(const WorldWish& wish, const std::filesystem::path& folder, const Said& said, Sums& sums) {
   World world = make_world(wish, folder);
-  add_stand_in(world, front_deg, back_deg, 10, wish.seed * 100 + wish.object);
-  if (shake_px > 0) shake_masks(world, shake_px, wish.seed * 100 + wish.object);
+  if (said.weights.empty())
+    add_stand_in(world, said.front_deg, said.back_deg, 10, wish.seed * 100 + wish.object);
+  else
+    ask_network(world, said.weights, said.network_masks, folder);
+  if (said.shake_px > 0) shake_masks(world, said.shake_px, wish.seed * 100 + wish.object);
   const std::size_t held = world.views.size() - 1;
   RefineWish refine_wish;
   refine_wish.held_out = held;
@@ -74,7 +83,7 @@ int main(int argc, char** argv) try {
   std::vector<std::string> forms;
   std::uint64_t first = 1, last = 1;
   std::size_t objects = 1;
-  double front = 22, back = 32, shake = 0;
+  Said said;
   for (int i = 2; i < argc; ++i) {
     const std::string word = argv[i];
     const auto next = [&] { return i + 1 < argc ? std::string(argv[++i]) : std::string("0"); };
@@ -84,9 +93,11 @@ int main(int argc, char** argv) try {
     if (word == "--views") wish.views = std::stoul(next());
     if (word == "--size") wish.size_px = std::stoi(next());
     if (word == "--spp") wish.spp = std::stoi(next());
-    if (word == "--front") front = std::stod(next());
-    if (word == "--back") back = std::stod(next());
-    if (word == "--shake") shake = std::stod(next());
+    if (word == "--front") said.front_deg = std::stod(next());
+    if (word == "--back") said.back_deg = std::stod(next());
+    if (word == "--shake") said.shake_px = std::stod(next());
+    if (word == "--weights") said.weights = next();
+    if (word == "--network-masks") said.network_masks = true;
     if (word == "--as-made") wish.clear = false;
   }
   if (forms.empty()) forms = {"blend", "blown", "bottle", "lathe", "solid"};
@@ -96,7 +107,7 @@ int main(int argc, char** argv) try {
     for (std::uint64_t seed = first; seed <= last; ++seed)
       for (std::size_t object = 0; object < objects; ++object) {
         wish.form = form, wish.seed = seed, wish.object = object;
-        measure(wish, folder / (form + "-" + std::to_string(seed)), front, back, shake, sums);
+        measure(wish, folder / (form + "-" + std::to_string(seed)), said, sums);
       }
     std::printf("%s: network %.1f %.1f", form.c_str(), sums.network_front / sums.count, sums.network_back / sums.count);
     for (const char* stage : {"hull", "outline", "normals", "light-2"})
@@ -116,9 +127,11 @@ int main(int argc, char** argv) try {
               all.network_front / n, all.network_back / n, all.hull_front / n, all.hull_back / n, all.answer_front / n,
               all.answer_back / n, all.maps_front / n, all.maps_back / n, all.within / n, all.within_two / n,
               all.beyond / n);
+  // With trained weights the factor is theirs as much as the refinement's: it is told, and must be above one.
+  const bool real = !said.weights.empty();
   // Beside it, of another data set and by another method: a published 16.7 degrees of glass normals by polarization.
-  bool met = claim("front, times better than the network", all.network_front / all.maps_front, 2.5, 100);
-  met &= claim("back, times better than the network", all.network_back / all.maps_back, 3, 100);
+  bool met = claim("front, times better than the network", all.network_front / all.maps_front, real ? 1 : 2.5, 100);
+  met &= claim("back, times better than the network", all.network_back / all.maps_back, real ? 1 : 3, 100);
   met &= claim("share within the stated uncertainty of 68.3 %", all.within / n, 0.55, 0.92);
   met &= claim("share beyond three of them", all.beyond / n, 0, 0.06);
   return met ? 0 : 1;

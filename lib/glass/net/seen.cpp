@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -187,6 +188,15 @@ void demand_mosaic(const io::Image& mosaic, const std::string& place) {
   // of 4 and 10 %; mosaics of colours, as white balanced as can be, 12 to 21 % at 21 to 56; photographs without
   // filters, and of a painting's canvas, show up to 0.6 % of polarization.
   constexpr double least = 0.01, unlike = 0.04, of_polarization = 0.3;
+  // Edges of a mask look polarized.
+  constexpr std::size_t fewest_levels = 3;
+  std::set<float> levels;
+  for (std::size_t i = 0; i < mosaic.data.size() && levels.size() < fewest_levels; ++i) levels.insert(mosaic.data[i]);
+  if (levels.size() < fewest_levels)
+    throw Error(
+        Exit::data, place,
+        format("is a mask or empty, no photograph: %zu different values, at least %zu", levels.size(), fewest_levels),
+        "give the photograph as the polarization camera read it, no mask");
   const MosaicEvidence found = mosaic_evidence(mosaic);
   const double limit = std::max(unlike, of_polarization * found.polarization);
   if (found.diagonals > limit)
