@@ -46,6 +46,8 @@ class Polarization final : public World {
         .of_either_sign()
         .as_drawn()
         .means({"retardance_rad"});
+    add({"veil of the lens", "optics.veiling-glare", {"optics"}, {"image.mean", "image.radiance"}, 0.01, 0.08})
+        .means({"share"});
     add({"leaky screen", "screen.leak", light, {"screen.polarized-part"}, 0.01, 0.15}).means({"leak"});
     add({"turned screen", "screen.angle", light, {"screen.polarized-across"}, 0.015, 0.1})
         .of_either_sign()
@@ -57,7 +59,6 @@ class Polarization final : public World {
         .as_drawn()
         .nearly("film_m");
     add({"dichroic lens", "", {}, {}, 0.05, 0.2}).of_either_sign();
-    add({"veil of dust", "", {}, {}, 0.01, 0.05});
     add({"dull polarizer", "", {}, {}, 0.01, 0.05});
     return k;
   }
@@ -156,7 +157,7 @@ class Polarization final : public World {
     MosaicCamera& c = stage.camera;
     c.leak = size_of(sizes, "leaky polarizers"), c.share = size_of(sizes, "crosstalk");
     c.retardance = size_of(sizes, "stressed lens"), c.dichroism = size_of(sizes, "dichroic lens");
-    c.veil = size_of(sizes, "veil of dust"), c.dull = size_of(sizes, "dull polarizer");
+    c.veil = size_of(sizes, "veil of the lens"), c.dull = size_of(sizes, "dull polarizer");
     const double all = size_of(sizes, "turned polarizers");
     const auto own = [&](std::size_t part) {
       return all + (sizes.contains("uneven polarizers") ? size_of(sizes, "uneven polarizers", part) : 0);
@@ -210,7 +211,7 @@ class Polarization final : public World {
       };
       value += 0.5 * c.dichroism * (light.along(hand(1)) - light.along(hand(-1)));
     }
-    return value + 0.5 * c.veil;
+    return value;
   }
   Numbers picture(const MirrorStage& stage, std::size_t p) const {
     Numbers own(pixels);
@@ -220,6 +221,16 @@ class Polarization final : public World {
         Random random(draws_, p * pixels + i);
         own[i] = exposure_ * own_[p] * sample(stage, p, x, y, random);
       }
+    // Light that runs to and fro in the lens keeps its polarization: behind each polarizer it is that of the picture.
+    for (const int filter : {0, 1, 2, 3}) {
+      const auto of_filter = [&](std::size_t i) {
+        return static_cast<int>(2 * (i / size % 2) + i % size % 2) == filter;
+      };
+      double sum = 0;
+      for (std::size_t i = 0; i < pixels; ++i) sum += of_filter(i) ? own[i] : 0;
+      for (std::size_t i = 0; i < pixels; ++i)
+        if (of_filter(i)) own[i] += stage.camera.veil * sum / (pixels / 4);
+    }
     if (stage.camera.share == 0) return own;
     // Charge walks: to those beside, and on from there.
     Numbers walked = own;

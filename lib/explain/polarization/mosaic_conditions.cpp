@@ -26,8 +26,9 @@ std::vector<double> readings_of(const MosaicLight& light, const std::vector<Row>
 
 class Conditions {
  public:
-  Conditions(const MosaicLight& light, const std::vector<Row>& rows, const State& state, double gain)
-      : light_(light), rows_(rows), state_(state), gain_(gain), base_(readings_of(light, rows, state)) {}
+  Conditions(const MosaicLight& light, const std::vector<Row>& rows, const State& state, double gain,
+             const std::vector<PolarizerMeans>& means)
+      : light_(light), rows_(rows), state_(state), gain_(gain), means_(means), base_(readings_of(light, rows, state)) {}
 
   std::vector<Condition> all() {
     const auto degree = [&](const Row& row) {
@@ -64,6 +65,13 @@ class Conditions {
     add("surface.incidence-angle", "rad", "surface", incidence, relative);
     add(
         "image.radiance", "1", "sensor", [&, i = std::size_t{0}](const Row&) mutable { return base_[i++]; }, relative);
+    std::vector<double> veil;
+    const auto mean_of = [&](const Row& row) {
+      const Site& site = light_.site(row.tile, row.place);
+      return means_[light_.tiles()[row.tile].image][static_cast<std::size_t>(2 * (site.y & 1) + (site.x & 1))];
+    };
+    for (const Row& row : rows_) veil.push_back(mean_of(row));
+    add("image.mean", "1", "optics", mean_of, veil);
     const auto column = [&](const Row& row) { return static_cast<double>(light_.site(row.tile, row.place).x); };
     const auto line = [&](const Row& row) { return static_cast<double>(light_.site(row.tile, row.place).y); };
     add("image.x", "px", "sensor", column, relative);
@@ -106,6 +114,7 @@ class Conditions {
   const std::vector<Row>& rows_;
   State state_;
   double gain_;
+  const std::vector<PolarizerMeans>& means_;
   std::vector<double> base_;
   std::vector<Condition> conditions_;
 };
@@ -113,8 +122,8 @@ class Conditions {
 }  // namespace
 
 std::vector<Condition> mosaic_conditions(const MosaicLight& light, const std::vector<Row>& rows, const State& state,
-                                         double gain) {
-  return Conditions(light, rows, state, gain).all();
+                                         double gain, const std::vector<PolarizerMeans>& means) {
+  return Conditions(light, rows, state, gain, means).all();
 }
 
 }  // namespace gonio::explain::polarization

@@ -18,6 +18,7 @@
 #include "manifest/sections/mechanism_use.h"
 #include "manifest/sections/object.h"
 #include "render/link.h"
+#include "render/mechanisms/optics_veiling_glare.h"
 #include "scene/mechanisms.h"
 
 namespace gonio::mechanism {
@@ -75,6 +76,14 @@ photograph::PolarizerArray array_in_use(const manifest::Document& document, cons
   return array;
 }
 
+double veil_in_use(const manifest::Document& document, const std::string& camera) {
+  const mechanism::Mechanism& m = mechanism::optics_veiling_glare();
+  const auto use = document.mechanisms.find(m.id);
+  if (use == document.mechanisms.end()) return 0;
+  const auto amounts = scene::camera_amounts(m, use->second, camera, manifest::place(document, "/mechanisms/" + m.id));
+  return amounts ? amounts->at(0) : 0;
+}
+
 std::vector<Film> films_in_use(const manifest::Document& document, const Setup& setup) {
   const mechanism::Mechanism& m = mechanism::surface_coating();
   std::vector<Film> films(setup.mirrors.size());
@@ -127,7 +136,7 @@ void check_mosaics(const manifest::Document& document) {
   }
   for (const std::string& id : traced::behind_the_lens(document)) {
     const render::Link* link = link_of(*mechanism::find_mechanism(id));
-    if (link->polarizers == nullptr)
+    if (link->polarizers == nullptr && id != mechanism::optics_veiling_glare().id)
       throw Error(Exit::data, manifest::place(document, "/mechanisms/" + id),
                   "acts on whole pictures, and mosaic photographs are asked sample by sample",
                   "switch it off, or take it off the pictures");

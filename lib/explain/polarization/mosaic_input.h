@@ -17,6 +17,7 @@ manifest::Document images_of(manifest::Document document, const std::string& cam
 void write_gain(manifest::Document& document, std::size_t entry, double factor);
 // What the manifest's mechanisms have before the samples of `camera`.
 photograph::PolarizerArray array_in_use(const manifest::Document& document, const std::string& camera);
+double veil_in_use(const manifest::Document& document, const std::string& camera);
 // On each mirror in question.
 std::vector<Film> films_in_use(const manifest::Document& document, const Setup& setup);
 bool is_in_use(const manifest::Document& document, const mechanism::Mechanism& mechanism, const std::string& camera);

@@ -1,6 +1,7 @@
 // What surrounds the polarization problem: its rows and their conditions, the upgraded manifest, pictures. Private to
 // polarization/.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,13 @@ struct Use {  // a form of a mechanism, and the places of all its declaration's 
   std::vector<double> neutral;
 };
 
-// `state`: without any hypothesis; `gain`: from the simulation to the recordings.
+// Of a picture's samples behind each polarizer, at 2 (row & 1) + (column & 1).
+using PolarizerMeans = std::array<double, 4>;
+
+// `state`: without any hypothesis; `gain`: from the simulation to the recordings, of whose pictures the means are.
 std::vector<inference::Condition> mosaic_conditions(const MosaicLight& light, const std::vector<Row>& rows,
-                                                    const State& state, double gain);
+                                                    const State& state, double gain,
+                                                    const std::vector<PolarizerMeans>& means);
 // Where the use is active: into the section of what it changes, or into the mechanisms.
 void upgrade(const Setup& setup, const Use& use, const inference::Explanation& explanation,
              manifest::Document& document);

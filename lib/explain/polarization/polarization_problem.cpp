@@ -14,6 +14,7 @@
 #include "inference/explanation.h"
 #include "photograph/polarizers.h"
 #include "relighting/cells.h"
+#include "render/mechanisms/optics_veiling_glare.h"
 #include "stats/intervals.h"
 
 namespace gonio::explain {
@@ -30,7 +31,9 @@ class PolarizationProblem final : public Problem {
   PolarizationProblem(const manifest::Document& document, const ProblemOptions& options, const std::string& camera)
       : light_(document, options.repeats, camera),
         array_(array_in_use(document, camera)),
+        veil_(veil_in_use(document, camera)),
         film_(films_in_use(document, light_.setup())) {
+    find_means();
     group_tiles();
     choose_rows();
     if (rows_.size() < fewest_rows) refuse_few(document, camera, rows_.size());
@@ -38,7 +41,7 @@ class PolarizationProblem final : public Problem {
     exposures();
     for (const Term* term : all_terms())
       if (!is_in_use(document, term->mechanism(), camera)) enter(*term);
-    observations_.conditions = mosaic_conditions(light_, rows_, state_of(neutral()), gain_);
+    observations_.conditions = mosaic_conditions(light_, rows_, state_of(neutral()), gain_, mean_);
   }
 
   void predict(std::span<const double> values, std::size_t group, std::span<double> prediction) const override {
@@ -48,7 +51,7 @@ class PolarizationProblem final : public Problem {
     for (std::size_t i = observations_.first[group]; i < observations_.first[group + 1]; ++i) {
       const Row& row = rows_[i];
       if (row.tile != tile) light_.readings(row.tile, state, reading), tile = row.tile;
-      prediction[i - observations_.first[group]] = exposure(values, row) * reading[row.place];
+      prediction[i - observations_.first[group]] = exposure(values, row) * reading[row.place] + veil(state, row);
     }
   }
 
@@ -82,8 +85,26 @@ class PolarizationProblem final : public Problem {
     const std::size_t image = light_.tiles()[row.tile].image;
     return light_.recordings().images[image].gain.value.at(0) * values[exposure_] * values[own_exposure_ + image];
   }
+  // In units of the recordings. Their means have the veil in them.
+  double veil(const State& state, const Row& row) const {
+    const Site& site = light_.site(row.tile, row.place);
+    const double mean = mean_[light_.tiles()[row.tile].image][filter_of(site.x, site.y)];
+    return equation::optics_veiling_glare(0, state.veil, mean / (1 + state.veil));
+  }
+  static std::size_t filter_of(int x, int y) { return static_cast<std::size_t>(2 * (y & 1) + (x & 1)); }
+  void find_means() {
+    for (const relighting::Recording& image : light_.recordings().images) {
+      PolarizerMeans sum{}, count{};
+      for (int y = 0; y < image.picture.height; ++y)
+        for (int x = 0; x < image.picture.width; ++x)
+          sum[filter_of(x, y)] += image.picture.at(x, y, 0), ++count[filter_of(x, y)];
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= std::max(1.0, count[k]);
+      mean_.push_back(sum);
+    }
+  }
   State stated() const {
     State state;
+    state.veil = veil_;
     state.array = array_;
     state.rougher.assign(light_.setup().rough.size(), 0.0);
     state.film = film_;
@@ -175,7 +196,7 @@ class PolarizationProblem final : public Problem {
       const relighting::Recording& image = light_.recordings().images[light_.tiles()[row.tile].image];
       const double y = image.picture.at(site.x, site.y, 0);
       o.value.push_back(y), o.norm.push_back(y * y), o.block.push_back(static_cast<std::uint32_t>(row.tile));
-      if (simulated.back() > 0) ratio.push_back(y / (image.gain.value.at(0) * simulated.back()));
+      if (simulated.back() > 0) ratio.push_back((y - veil(state, row)) / (image.gain.value.at(0) * simulated.back()));
     }
     gain_ = ratio.empty() ? 1 : stats::median(ratio);
     renumber_blocks();
@@ -246,7 +267,9 @@ class PolarizationProblem final : public Problem {
 
   MosaicLight light_;
   photograph::PolarizerArray array_;  // as the manifest has it
+  double veil_ = 0;                   // likewise
   std::vector<Film> film_;            // likewise
+  std::vector<PolarizerMeans> mean_;  // of each picture's samples
   std::size_t cells_ = 1;
   std::vector<std::vector<std::size_t>> tiles_of_group_;
   std::vector<std::size_t> image_of_group_;

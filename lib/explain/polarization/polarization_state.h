@@ -14,6 +14,7 @@ struct Film {
 
 struct State {
   photograph::PolarizerArray array;
+  double veil = 0;                              // optics.veiling-glare: its share
   double screen_leak = 0, screen_turn_rad = 0;  // of all screens
   std::vector<double> rougher;                  // of each surface in question (surface.roughness)
   std::vector<Film> film;                       // on each mirror in question (surface.coating)

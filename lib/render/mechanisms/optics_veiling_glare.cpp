@@ -12,7 +12,7 @@ const Mechanism& optics_veiling_glare() {
       .source = "ISO 9358:1994, veiling glare index; Talvala et al. 2007 (uniform part)",
       .stage = "optics",
       .target = Target::camera,
-      .domains = {"stacks", "images"},
+      .domains = {"stacks", "images", "polarization"},
       .parameters = {{.name = "share",
                       .unit = "1",
                       .neutral = 0,

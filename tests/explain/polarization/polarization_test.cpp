@@ -83,6 +83,11 @@ TEST(Mosaics, FindTheLensThatMadeThem) {
   EXPECT_NEAR(fitted(with(R"("lens.birefringence": {"retardance_rad": -0.8})"), "lens.birefringence", 1).values.at(0),
               -0.8, 0.06);
 }
+// What is seen is nearly of one brightness: 0.015 is its standard deviation.
+TEST(Mosaics, FindTheVeilThatMadeThem) {
+  EXPECT_NEAR(fitted(with(R"("optics.veiling-glare": {"share": 0.1})"), "optics.veiling-glare").values.at(0), 0.1,
+              0.045);
+}
 TEST(Mosaics, FindTheScreenThatMadeThem) {
   const double leak = 0.1;
   EXPECT_NEAR(fitted(mosaic_scene("", 0.98 * (1 - leak) / (1 + leak)), "screen.leak").values.at(0), leak, 0.006);
@@ -93,6 +98,38 @@ TEST(Mosaics, FindTheRoughnessThatMadeThem) {
   EXPECT_NEAR(fitted(mosaic_scene("", 0.98, 0.6, 0.12), "surface.roughness", 1).values.at(0), 0.12, 0.015);
 }
 
+std::vector<double> predicted(const Problem& problem, const std::vector<double>& values) {
+  std::vector<double> all(problem.observations().rows());
+  for (std::size_t g = 0; g < problem.observations().groups(); ++g) {
+    const auto first = problem.observations().first[g], end = problem.observations().first[g + 1];
+    problem.predict(values, g, std::span(all).subspan(first, end - first));
+  }
+  return all;
+}
+
+// A veil that the manifest states is in the simulation, and is not asked for again.
+TEST(Mosaics, AVeilThatIsStatedLacksNothing) {
+  ScratchFolder folder;
+  const std::string veiled = with(R"("optics.veiling-glare": {"share": 0.1})");
+  photograph_mosaics(veiled, folder.path(), 5);
+  const auto rms = [&](const std::string& stated) {  // of residuals in their own sigmas, exposures as they come
+    const auto problem = problem_of(stated, folder.path());
+    std::vector<double> neutral;
+    for (const Parameter& p : problem->parameters()) neutral.push_back(p.neutral);
+    const std::vector<double> all = predicted(*problem, neutral);
+    double sum = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      sum += std::pow((problem->observations().value[i] - all[i]) / problem->observations().sigma[i], 2);
+    const bool asked =
+        std::ranges::any_of(problem->candidates(), [](const Candidate& c) { return c.id() == "optics.veiling-glare"; });
+    EXPECT_EQ(asked, stated != veiled);
+    return std::sqrt(sum / static_cast<double>(all.size()));
+  };
+  const double with_it = rms(veiled), without = rms(mosaic_scene());
+  EXPECT_LT(with_it, 1.1);
+  EXPECT_GT(without, 1.08 * with_it);
+}
+
 // One term after the other changes predictions from where its search begins, and nothing where it is neutral.
 TEST(Mosaics, TermsAreAbsentAtNeutralAndSeenWhereTheirSearchBegins) {
   ScratchFolder folder;
@@ -100,20 +137,12 @@ TEST(Mosaics, TermsAreAbsentAtNeutralAndSeenWhereTheirSearchBegins) {
   const auto problem = problem_of(mosaic_scene(), folder.path());
   std::vector<double> neutral;
   for (const Parameter& p : problem->parameters()) neutral.push_back(p.neutral);
-  const auto predicted = [&](const std::vector<double>& values) {
-    std::vector<double> all(problem->observations().rows());
-    for (std::size_t g = 0; g < problem->observations().groups(); ++g) {
-      const auto first = problem->observations().first[g], end = problem->observations().first[g + 1];
-      problem->predict(values, g, std::span(all).subspan(first, end - first));
-    }
-    return all;
-  };
-  const std::vector<double> base = predicted(neutral);
+  const std::vector<double> base = predicted(*problem, neutral);
   EXPECT_GE(problem->candidates().size(), 9U);
   for (const Candidate& c : problem->candidates()) {
     std::vector<double> values = neutral;
     for (const std::size_t p : c.parameters) values[p] = problem->parameters()[p].start;
-    const std::vector<double> other = predicted(values);
+    const std::vector<double> other = predicted(*problem, values);
     double change = 0, size = 0;
     for (std::size_t i = 0; i < base.size(); ++i) change += std::pow(other[i] - base[i], 2), size += base[i] * base[i];
     EXPECT_GT(std::sqrt(change / size), 1e-4) << c.id();  // little glass is seen
