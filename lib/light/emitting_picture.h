@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "geom/luminance.h"
 #include "geom/vector.h"
 #include "light/light.h"
 
@@ -21,8 +22,7 @@ class EmittingPicture {
   }
   // For sampling: Rec. 709 luminance, positive wherever a band is.
   double importance(std::size_t x, std::size_t y) const {
-    const Rgb value = radiance(x, y);
-    return 0.2126 * value.x + 0.7152 * value.y + 0.0722 * value.z;
+    return luminance_of(radiance(x, y));
   }
 
  private:

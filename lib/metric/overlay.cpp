@@ -7,12 +7,11 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "geom/luminance.h"
 #include "photograph/noise_variance.h"
 
 namespace gonio::metric {
 namespace {
-
-constexpr float luminance_weights[3] = {0.2126f, 0.7152f, 0.0722f};
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
@@ -24,7 +23,7 @@ io::Image luminance(const io::Image& colour, bool squared) {
   io::Image y(colour.width, colour.height, {"Y"});
   for (std::size_t i = 0; i < y.pixels(); ++i)
     for (std::size_t c = 0; c < 3; ++c) {
-      const float w = luminance_weights[c];
+      const auto w = static_cast<float>(luminance_weights[c]);
       y.data[i] += (squared ? w * w : w) * colour.data[3 * i + c];
     }
   return y;

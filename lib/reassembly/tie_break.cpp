@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "geom/luminance.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/camera.h"
 #include "manifest/sections/image.h"
@@ -36,9 +37,9 @@ Grey grey_of(const io::Image& image, int block) {
       for (int v = 0; v < block; ++v)
         for (int u = 0; u < block; ++u) {
           const int px = x * block + u, py = y * block + v;
-          sum += c[0] < 0 ? image.at(px, py, 0)
-                          : 0.2126 * image.at(px, py, c[0]) + 0.7152 * image.at(px, py, c[1]) +
-                                0.0722 * image.at(px, py, c[2]);
+          sum += c[0] < 0
+                     ? image.at(px, py, 0)
+                     : luminance_of<double>(image.at(px, py, c[0]), image.at(px, py, c[1]), image.at(px, py, c[2]));
         }
       out.value.push_back(sum / (block * block));
     }

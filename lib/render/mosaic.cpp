@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geom/luminance.h"
 #include "geom/vector.h"
 #include "photograph/mosaic.h"
 
@@ -56,8 +57,8 @@ io::Image luminance(const io::Image& picture) {
   io::Image result(picture.width, picture.height, {"Y"});
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
-      result.at(x, y, 0) = static_cast<float>(0.2126 * picture.at(x, y, from[0]) + 0.7152 * picture.at(x, y, from[1]) +
-                                              0.0722 * picture.at(x, y, from[2]));
+      result.at(x, y, 0) = static_cast<float>(
+          luminance_of<double>(picture.at(x, y, from[0]), picture.at(x, y, from[1]), picture.at(x, y, from[2])));
   return result;
 }
 

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <span>
 
+#include "geom/luminance.h"
+
 namespace gonio::report {
 namespace {
 
@@ -45,6 +47,10 @@ std::string hex(Colour colour) {
   std::snprintf(text, sizeof text, "#%02x%02x%02x", code(colour[0]) & 255u, code(colour[1]) & 255u,
                 code(colour[2]) & 255u);
   return text;
+}
+
+bool is_dark(Colour colour) {
+  return luminance_of(colour[0], colour[1], colour[2]) < 0.45f;  // of the codes, not of their light
 }
 
 }  // namespace gonio::report

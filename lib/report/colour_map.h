@@ -13,5 +13,6 @@ using Colour = std::array<float, 3>;  // sRGB codes / 255
 Colour magnitude_colour(double t);  // 0 .. 1, clipped; NaN is magenta
 Colour signed_colour(double t);     // -1 .. 1, clipped, 0 is white; NaN is magenta
 std::string hex(Colour colour);     // "#rrggbb"
+bool is_dark(Colour colour);        // what is written upon it is light
 
 }  // namespace gonio::report

@@ -20,7 +20,7 @@ std::string words(double x, double y, const char* anchor, const std::string& tex
 std::string cell(const HeatStrip& strip, double limit, double x, double y, double value) {
   if (!std::isfinite(value)) return words(x + cell_width / 2, y + 16, "middle", "\u2013");
   const Colour colour = strip.diverging ? signed_colour(value / limit) : magnitude_colour(value / limit);
-  const bool pale = 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2] < 0.45f;
+  const bool pale = is_dark(colour);
   return format("<rect x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\" fill=\"", x, y, cell_width, cell_height) +
          hex(colour) + "\"/>" + (pale ? "<g fill=\"#fff\">" : "<g>") +
          words(x + cell_width / 2, y + 16, "middle", cell_text(value, limit)) + "</g>";

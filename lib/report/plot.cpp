@@ -227,7 +227,7 @@ std::string html(const HeatStrip& strip) {
     for (std::size_t c = 0; c < strip.columns.size(); ++c) {
       const double v = strip.values.at(r * strip.columns.size() + c);
       const Colour colour = strip.diverging ? signed_colour(v / limit) : magnitude_colour(v / limit);
-      const bool pale = 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2] < 0.45f;
+      const bool pale = is_dark(colour);
       text += std::isfinite(v) ? std::string("<td") + (pale ? " class=\"pale\"" : "") +
                                      " style=\"background:" + hex(colour) + "\">" + cell_text(v, limit) + "</td>"
                                : "<td>\u2013</td>";

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "contrast/measure/matrix_code.h"
 #include "contrast/measure/sample_outline.h"
+#include "geom/luminance.h"
 #include "manifest/document.h"
 #include "manifest/image_list.h"
 #include "manifest/sections/image.h"
@@ -315,14 +316,14 @@ GreyView read_view(const manifest::Document& document, const InputView& view, co
                 format("has %d x %d px, its camera \"%s\" %d x %d px", colour.width, colour.height,
                        entry.camera.c_str(), view.camera->width_px(), view.camera->height_px()),
                 "give the picture as the calibrated camera took it, neither cropped nor scaled");
-  constexpr float weights[3] = {0.2126f, 0.7152f, 0.0722f};  // Rec. 709
   const std::size_t channels = colour.channels.size();
   GreyView grey{colour.width, colour.height, std::vector<float>(colour.pixels()), {}, picture.clipped, {}};
   const bool has_variance = picture.variance.pixels() == colour.pixels();
   if (has_variance || entry.noise) grey.variance.assign(colour.pixels(), 0);
   for (std::size_t i = 0; i < colour.pixels(); ++i)
     for (std::size_t c = 0; c < channels; ++c) {
-      const float v = colour.data[i * channels + c], w = channels == 3 ? weights[c] : 1.0f;
+      const float v = colour.data[i * channels + c];
+      const float w = channels == 3 ? static_cast<float>(luminance_weights[c]) : 1.0f;
       grey.value[i] += w * v;
       if (has_variance) grey.variance[i] += w * w * picture.variance.data[i * channels + c];
       if (entry.noise) grey.variance[i] += w * w * static_cast<float>(photograph::noise_variance(*entry.noise, v));

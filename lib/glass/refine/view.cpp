@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geom/luminance.h"
 #include "glass/net/seen.h"
 #include "io/picture.h"
 #include "light/aimed.h"
@@ -87,7 +88,7 @@ void add_screen(View& view, const scene::Scene& scene, std::size_t number, const
     for (int x = 0; x < columns; ++x) {
       const Vec3 at = panel.at(((x + 0.5) / columns - 0.5) * panel.width_m, (0.5 - (y + 0.5) / rows) * panel.height_m);
       const Rgb radiance = found->emitter->hit(at + panel.frame.n, -panel.frame.n).radiance * gain;
-      luminance.push_back(0.2126 * radiance.x + 0.7152 * radiance.y + 0.0722 * radiance.z);
+      luminance.push_back(luminance_of(radiance));
     }
   view.screen = std::make_shared<ScreenPicture>(panel, luminance, columns, rows, value("exponent").x);
   view.emitter = found->emitter;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/luminance.h"
 #include "light/aimed.h"
 #include "light/distribution.h"
 #include "light/emitting_picture.h"
@@ -69,7 +70,7 @@ class ShownLight {
         const std::size_t x = beside(column, i, columns_), y = beside(row, j, rows_);
         sum += of(x, y) * ((i == 0 ? 0.75 : 0.125) * (j == 0 ? 0.75 : 0.125));
       }
-    return 0.2126 * sum.x + 0.7152 * sum.y + 0.0722 * sum.z;
+    return luminance_of(sum);
   }
 
  private:
