@@ -51,19 +51,19 @@ RefineWish wish_of(const cli::Invocation& call) {
   return wish;
 }
 
-// Writes `mesh` and gives the difference of a rendering with it from the photograph of the view held out.
-double differs(const cli::Invocation& call, const View& view, const Stage& stage, std::size_t image,
-               const std::string& name) {
+// Writes the stage's mesh, and the view that was held out as it is rendered with it.
+Rendered rendered_with(const cli::Invocation& call, const View& view, const Stage& stage, std::size_t image,
+                       const std::string& name) {
   const fs::path mesh = call.output_path(name + ".ply"), picture = call.output_path("held-out-" + name + ".exr");
   io::write_ply(mesh, mesh_of(stage.field));
   const int spp = static_cast<int>(call.integer("spp"));
-  if (spp == 0) return 0;
+  if (spp == 0) return {};
   manifest::Document document = call.document;
   document.allow_outside = true;  // its own files lie where the manifest does, the body below --out
   enter_body(document, stage, 0, name, mesh);
   const io::Image rendered = rendered_with_stokes(document, image, spp, call.seed, picture);
   io::write_picture(picture, rendered);
-  return difference_from(view, rendered);
+  return {difference_from(view, rendered), rendered};
 }
 
 std::string table_of(const Refined& refined, double index_sigma) {
@@ -92,14 +92,18 @@ void enter_comparison(manifest::Document& document, const View& view, double bef
                              view.id.c_str(), before, after));
 }
 
-void write_maps(cli::Invocation& call, const Refined& refined, const Measuring& measuring, std::size_t views) {
+std::vector<io::Image> write_maps(cli::Invocation& call, const Refined& refined, const Measuring& measuring,
+                                  std::size_t views) {
   make_folder(call.out / "maps");
+  std::vector<io::Image> all;
   for (std::size_t v = 0; v < views; ++v) {
     const std::string& id = measuring.view(v).id;
     const fs::path path = call.output_path("maps/" + file_stem(id) + ".exr");
-    io::write_picture(path, maps_of(refined, measuring, v));
+    all.push_back(maps_of(refined, measuring, v));
+    io::write_picture(path, all.back());
     manifest::add_file(call.document, path, "maps-" + id);
   }
+  return all;
 }
 
 }  // namespace
@@ -178,14 +182,17 @@ Exit run(cli::Invocation& call) {
   const Refined refined = refine(views, wish);
   const Measuring measuring(views, wish.sigmas);
   const std::size_t image = *wish.held_out;
-  const double before = differs(call, views[image], refined.stages.front(), image, "hull");
-  const double after = differs(call, views[image], refined.best(), image, name_of_body);
-  write_maps(call, refined, measuring, views.size());
+  const Rendered before = rendered_with(call, views[image], refined.stages.front(), image, "hull");
+  const Rendered after = rendered_with(call, views[image], refined.best(), image, name_of_body);
+  const std::vector<io::Image> maps = write_maps(call, refined, measuring, views.size());
   const fs::path table = call.output_path("stages.csv");
   write_file(table, table_of(refined, refined.index_sigma));
   manifest::add_file(call.document, table, "stages");
+  const fs::path page = call.output_path("report.html");
+  write_file(page, page_of(refined, views, image, maps, before, after));
+  manifest::add_file(call.document, page, "glass-refine-page");
   enter_body(call.document, refined.best(), refined.index_sigma, name_of_body, call.out / "refined.ply");
-  if (call.integer("spp") > 0) enter_comparison(call.document, views[image], before, after);
+  if (call.integer("spp") > 0) enter_comparison(call.document, views[image], before.difference, after.difference);
   if (wish.light && refined.index_sigma == 0)
     log(LogLevel::warning,
         "two refractions do not explain the view that was kept out any better: the answer is that of "

@@ -23,6 +23,7 @@ const cli::Program& gonio_program() {
                 {"maps/IMAGE.exr", "of each view: glass-net(1)'s layers, as the body has them, and the thickness, m"},
                 {"held-out-hull.exr, held-out-refined.exr",
                  "the view that was kept out, rendered with either body and render(1)'s Stokes planes"},
+                {"report.html", "the page: the view that was kept out beside its renderings, stages, maps"},
                 {"stages.csv", "what each stage left unexplained, index, and which is the answer"}},
       .references = {"Laurentini, The visual hull concept for silhouette-based image understanding, IEEE PAMI 16(2), "
                      "1994.",

@@ -78,6 +78,9 @@ TEST_F(GlassRefine, WritesBodyMapsAndWhatEachStageLeft) {
   EXPECT_THAT(table, testing::StartsWith("stage,unexplained,unexplained_held_out,index"));
   EXPECT_THAT(table, testing::HasSubstr("\nhull,"));
   EXPECT_THAT(table, testing::HasSubstr("\nlight-2,"));
+  const std::string page = read_file(folder() / "answer/report.html");
+  for (const char* part : {"view-4, kept out of the fit", "photograph, hull, answer", "light-2", "back-normal +-"})
+    EXPECT_THAT(page, testing::HasSubstr(part));
   // Its maps are what a network's answers look like; the same call gives the same bytes, whatever the threads.
   const Words again{"--network", "answer/maps", "--no-light", "set/object-0.json", "--hold-out", "view-2"};
   for (const char* name : {"one", "two"}) {
