@@ -150,11 +150,6 @@ double Measuring::outline_misfit_px(const Asked& asked, std::span<const Measurem
   return 1.4826 * *middle;  // of a Gaussian
 }
 
-void Measuring::weigh_outlines(double misfit_px) {
-  const double own = sigmas_.outline_px * sigmas_.outline_px, beyond = std::max(0.0, misfit_px * misfit_px - own);
-  sigmas_.outline_px = std::sqrt(own + 2 * band_px * sigmas_.normals_px * beyond);
-}
-
 double Measuring::outline_cost(const Asked& asked, const Measurement& m, Rows* rows) const {
   const View& view = views_[m.view];
   const PixelRay line = ray(asked.field, m.view, m.x, m.y);

@@ -60,9 +60,7 @@ class Measuring {
   // How far outlines are off, in pixels, as the standard deviation that their median speaks for: what masks that
   // contradict each other leave, whatever the body.
   double outline_misfit_px(const Asked& asked, std::span<const Measurement> measurements) const;
-  // What outlines count for from now on, as they are off by so much. What goes beyond their own sigma is an edge drawn
-  // in the wrong place: all pixels across it err alike, and those along it over as many as a network's normals do.
-  void weigh_outlines(double misfit_px);
+  void set_outline_sigma(double px) { sigmas_.outline_px = px; }
   // Mean over the pixels of a view of the bounded cost of the light, 0 to 1: explained not at all.
   double unexplained(const Asked& asked, std::size_t view) const;
 

@@ -100,7 +100,8 @@ class Refinement {
     }
     descend("outline", told, 1, 6);
     const Stage& smooth = refined_.stages.back();
-    measuring_.weigh_outlines(measuring_.outline_misfit_px({smooth.field, smooth.glass, 1}, told));
+    measuring_.set_outline_sigma(
+        std::max(wish_.sigmas.outline_px, measuring_.outline_misfit_px({smooth.field, smooth.glass, 1}, told)));
     if (!normals.empty()) {
       told.insert(told.end(), normals.begin(), normals.end());
       descend("normals", told, 1, 8);
