@@ -66,7 +66,8 @@ inline std::string mosaic_scene(const std::string& further = "", double degree =
 // process, for tests that differ in what the camera does to the same light.
 inline const std::vector<io::Image>& light_of_mosaics(manifest::Document document, std::uint64_t seed) {
   for (const auto& [id, use] : document.mechanisms)
-    if (!render::in_sensor_chain(*mechanism::find_mechanism(id))) throw std::logic_error(id + " acts before the sensor");
+    if (!render::in_sensor_chain(*mechanism::find_mechanism(id)))
+      throw std::logic_error(id + " acts before the sensor");
   document.mechanisms.clear();
   static std::map<std::pair<std::string, std::uint64_t>, std::vector<io::Image>> known;
   std::vector<io::Image>& seen = known[{manifest::print_document(document, document.folder), seed}];
