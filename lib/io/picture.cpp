@@ -2,6 +2,7 @@
 #include "io/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -12,6 +13,22 @@
 
 namespace gonio::io {
 namespace {
+
+float linear_by_formula(float v) {
+  const float a = std::abs(v);
+  return std::copysign(a <= 0.04045f ? a / 12.92f : std::pow((a + 0.055f) / 1.055f, 2.4f), v);
+}
+
+// Of the codes c / 255 of 8-bit pictures.
+struct LinearOfCode {
+  std::array<float, 256> code{}, linear{};
+  LinearOfCode() {
+    for (std::size_t c = 0; c < code.size(); ++c) {
+      code[c] = static_cast<float>(c) / 255.0f;
+      linear[c] = linear_by_formula(code[c]);
+    }
+  }
+};
 
 constexpr const char* readable = "use .exr, .png, .jpg, .jpeg, .tif, .tiff, .bmp or .tga";
 
@@ -56,9 +73,14 @@ float srgb_from_linear(float v) {
   return std::copysign(a <= 0.0031308f ? 12.92f * a : 1.055f * std::pow(a, 1 / 2.4f) - 0.055f, v);
 }
 
+// Textures and vertex colours have millions of values, and most of them are one of 256.
 float linear_from_srgb(float v) {
-  const float a = std::abs(v);
-  return std::copysign(a <= 0.04045f ? a / 12.92f : std::pow((a + 0.055f) / 1.055f, 2.4f), v);
+  static const LinearOfCode known;
+  if (v >= 0 && v <= 1) {
+    const auto c = static_cast<std::size_t>(v * 255 + 0.5f);
+    if (known.code[c] == v) return known.linear[c];
+  }
+  return linear_by_formula(v);
 }
 
 }  // namespace gonio::io

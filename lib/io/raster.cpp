@@ -52,13 +52,11 @@ Image scaled(const cv::Mat& picture) {
   const int stored = picture.channels(), kept = stored >= 3 ? 3 : 1;
   Image image(picture.cols, picture.rows,
               kept == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"});
+  float* value = image.data.data();
   for (int y = 0; y < picture.rows; ++y) {
-    const Code* row = picture.ptr<Code>(y);
-    for (int x = 0; x < picture.cols; ++x)
-      for (int c = 0; c < kept; ++c) {
-        const int opencv_channel = kept == 3 ? 2 - c : 0;  // OpenCV stores B, G, R
-        image.at(x, y, c) = static_cast<float>(row[x * stored + opencv_channel]) / full_scale;
-      }
+    const Code* code = picture.ptr<Code>(y);
+    for (int x = 0; x < picture.cols; ++x, code += stored)
+      for (int c = kept - 1; c >= 0; --c) *value++ = static_cast<float>(code[c]) / full_scale;  // OpenCV: B, G, R
   }
   return image;
 }

@@ -1,4 +1,5 @@
 // calib-charuco --projector as people run it, on photographs of a world of closed forms, and what it refuses.
+// One process: ProjectorProgram.*:ProjectorRefusals.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/random.h"
+#include "base/text.h"
 #include "explain/images/traced.h"
 #include "explain/polarization/coat.h"
 #include "explain/polarization/mosaic_input.h"
@@ -44,14 +45,26 @@ std::vector<double> luminances(const std::vector<double>& rgb) {
   return {y.data.begin(), y.data.end()};
 }
 
-// Pixels of all pictures, traced: Stokes vectors one after the other, and the variances of s0.
-struct Traced {
-  std::vector<StokesVector> light;
-  std::vector<double> variance;
-};
-Traced traced_light(const manifest::Document& document, std::vector<images::TracedPixels>& pictures, double paths) {
+// What light depends on beside the files and the seed, which is the same for all.
+std::string key_of(const manifest::Document& document, const std::vector<images::TracedPixels>& pictures,
+                   double paths) {
+  std::string key = manifest::print_document(document, document.folder) + format("%.17g", paths);
+  for (const images::TracedPixels& picture : pictures) {
+    key += format(" image %zu", picture.entry);
+    for (const auto& [x, y] : picture.at) key += format(" %d,%d", x, y);
+  }
+  return key;
+}
+
+TracedLight traced_light(const manifest::Document& document, std::vector<images::TracedPixels>& pictures, double paths,
+                         KnownLight* known) {
+  if (known != nullptr) {
+    const std::string key = key_of(document, pictures, paths);
+    if (const auto found = known->find(key); found != known->end()) return found->second;
+    return (*known)[key] = traced_light(document, pictures, paths, nullptr);
+  }
   images::trace_pixels(document, pictures, paths, seed, images::Caustics::traced, images::Light::polarized);
-  Traced all;
+  TracedLight all;
   for (const images::TracedPixels& picture : pictures) {
     const std::vector<double> s0 = luminances(picture.radiance), others = luminances(picture.stokes);
     for (std::size_t k = 0; k < s0.size(); ++k) {
@@ -73,23 +86,23 @@ void add(StokesVector& to, const StokesVector& what, double factor) {
 }  // namespace
 
 MosaicLight::MosaicLight(const manifest::Document& stated, const std::vector<std::filesystem::path>& repeats,
-                         const std::string& camera) {
+                         const std::string& camera, KnownLight* known) {
   const manifest::Document document = images_of(stated, camera);
   setup_.camera = camera;
   recordings_ = relighting::read_recordings(document);
   relighting::measure_noise(repeats, document, recordings_);
   for (const std::string& name : polarized_lights(document))
     if (std::ranges::find(recordings_.lights, name) != recordings_.lights.end()) setup_.screens.push_back(name);
-  draw_tiles(document);
+  draw_tiles(document, known);
   look(document);
-  const Light light = trace(document, stated_paths, true);
+  const Light light = trace(document, stated_paths, true, known);
   for (std::size_t i = 0; i < sites_.size(); ++i) sites_[i].stokes = light[i];
-  trace_screens(document);
-  trace_roughness(document);
+  trace_screens(document, known);
+  trace_roughness(document, known);
 }
 
 // Whole tiles, all of whose pixels count; of dark ones nothing can be learnt.
-void MosaicLight::draw_tiles(const manifest::Document& document) {
+void MosaicLight::draw_tiles(const manifest::Document& document, KnownLight* known) {
   std::vector<std::vector<Tile>> drawn(recordings_.images.size());
   const std::size_t looked_at = std::max<std::size_t>(4, most_looked_at / std::max<std::size_t>(1, drawn.size()));
   std::vector<images::TracedPixels> middles(drawn.size());
@@ -110,7 +123,7 @@ void MosaicLight::draw_tiles(const manifest::Document& document) {
     middles[g].entry = image.entry;
     for (const Tile& tile : drawn[g]) middles[g].at.push_back({tile.x + side_px / 2, tile.y + side_px / 2});
   }
-  const Traced light = traced_light(document, middles, first_paths);
+  const TracedLight light = traced_light(document, middles, first_paths, known);
   double brightest = 0;
   for (const StokesVector& s : light.light) brightest = std::max(brightest, s[0]);
   const std::size_t each = std::max<std::size_t>(2, tiles_in_all / std::max<std::size_t>(1, drawn.size()));
@@ -178,18 +191,19 @@ void MosaicLight::ask_film(const scene::Surface& surface, std::size_t place, std
   setup_.mirrors.push_back({surface.id, {mean(eta->second.rgb()), mean(k->second.rgb())}});
 }
 
-MosaicLight::Light MosaicLight::trace(const manifest::Document& document, double paths, bool keep_variance) {
+MosaicLight::Light MosaicLight::trace(const manifest::Document& document, double paths, bool keep_variance,
+                                      KnownLight* known) {
   std::vector<images::TracedPixels> pictures(recordings_.images.size());
   for (std::size_t g = 0; g < pictures.size(); ++g) pictures[g].entry = recordings_.images[g].entry;
   for (std::size_t t = 0; t < tiles_.size(); ++t)
     for (std::size_t k = 0; k < in_a_tile; ++k) pictures[tiles_[t].image].at.push_back({site(t, k).x, site(t, k).y});
-  Traced all = traced_light(document, pictures, paths);
+  TracedLight all = traced_light(document, pictures, paths, known);
   if (keep_variance)
     for (std::size_t i = 0; i < sites_.size(); ++i) sites_[i].variance = all.variance[i];
   return std::move(all.light);
 }
 
-void MosaicLight::trace_screens(const manifest::Document& document) {
+void MosaicLight::trace_screens(const manifest::Document& document, KnownLight* known) {
   if (setup_.screens.empty()) return;
   const auto changed = [&](double degree, double turn) {
     manifest::Document other = document;
@@ -197,7 +211,7 @@ void MosaicLight::trace_screens(const manifest::Document& document) {
       set_screen(other, name, screen_degree_key, degree * screen_degree(document, name), 0);
       set_screen(other, name, screen_angle_key, screen_angle_rad(document, name) + turn, 0);
     }
-    return trace(other, other_paths, false);
+    return trace(other, other_paths, false, known);
   };
   const Light stated = changed(1, 0), none = changed(0, 0), left = changed(1, turn_rad), right = changed(1, -turn_rad);
   const double bend = 1 - std::cos(2 * turn_rad), slope = 2 * std::sin(2 * turn_rad);
@@ -211,9 +225,9 @@ void MosaicLight::trace_screens(const manifest::Document& document) {
   }
 }
 
-void MosaicLight::trace_roughness(const manifest::Document& document) {
+void MosaicLight::trace_roughness(const manifest::Document& document, KnownLight* known) {
   if (setup_.rough.empty()) return;
-  const Light stated = trace(document, other_paths, false);
+  const Light stated = trace(document, other_paths, false, known);
   for (const RoughSurface& surface : setup_.rough) {
     Rough& rough = rough_.emplace_back();
     for (const double more : {0.0, 0.02, 0.05, 0.085, 0.13, 0.2, roughest}) {
@@ -223,7 +237,7 @@ void MosaicLight::trace_roughness(const manifest::Document& document) {
       manifest::Document other = document;
       const double alpha = std::min(surface.upper, std::hypot(surface.alpha, more));
       other.surfaces.at(surface.name).parameters["alpha"].value = {alpha};
-      const Light light = trace(other, other_paths, false);
+      const Light light = trace(other, other_paths, false, known);
       for (std::size_t i = 0; i < light.size(); ++i) change[i] = minus(light[i], stated[i]);
     }
   }

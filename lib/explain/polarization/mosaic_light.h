@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,11 +46,19 @@ struct Site {
   double incidence_rad = 0;        // of the line of sight on what is met first; NaN: nothing
 };
 
+// Pixels of all pictures, traced: Stokes vectors one after the other, and the variances of s0.
+struct TracedLight {
+  std::vector<StokesVector> light;
+  std::vector<double> variance;
+};
+// What was traced before, by all that it depends on but the contents of the scene's files (known_light.h).
+using KnownLight = std::map<std::string, TracedLight>;
+
 class MosaicLight {
  public:
-  // Of the images of one camera behind polarizers.
+  // Of the images of one camera behind polarizers. What `known` has is not traced again, and what is traced is entered.
   MosaicLight(const manifest::Document& document, const std::vector<std::filesystem::path>& repeats,
-              const std::string& camera);
+              const std::string& camera, KnownLight* known);
 
   const Setup& setup() const { return setup_; }
   const relighting::Recordings& recordings() const { return recordings_; }
@@ -66,10 +75,10 @@ class MosaicLight {
     std::vector<std::vector<StokesVector>> change;  // of each node and site
   };
   using Light = std::vector<StokesVector>;  // of all sites
-  void draw_tiles(const manifest::Document& document);
-  Light trace(const manifest::Document& document, double paths, bool keep_variance);
-  void trace_screens(const manifest::Document& document);
-  void trace_roughness(const manifest::Document& document);
+  void draw_tiles(const manifest::Document& document, KnownLight* known);
+  Light trace(const manifest::Document& document, double paths, bool keep_variance, KnownLight* known);
+  void trace_screens(const manifest::Document& document, KnownLight* known);
+  void trace_roughness(const manifest::Document& document, KnownLight* known);
   void look(const manifest::Document& document);
   void ask_roughness(const manifest::Document& document, const scene::Surface& surface);
   void ask_film(const scene::Surface& surface, std::size_t place, std::vector<std::size_t>& mirror_of);

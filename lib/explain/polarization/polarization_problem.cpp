@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/text.h"
+#include "explain/polarization/known_light.h"
 #include "explain/polarization/mosaic_input.h"
 #include "explain/polarization/mosaic_light.h"
 #include "explain/polarization/polarization_outcome.h"
@@ -28,8 +29,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 class PolarizationProblem final : public Problem {
  public:
-  PolarizationProblem(const manifest::Document& document, const ProblemOptions& options, const std::string& camera)
-      : light_(document, options.repeats, camera),
+  PolarizationProblem(const manifest::Document& document, const ProblemOptions& options, const std::string& camera,
+                      KnownLight* known)
+      : light_(document, options.repeats, camera, known),
         array_(array_in_use(document, camera)),
         veil_(veil_in_use(document, camera)),
         film_(films_in_use(document, light_.setup())) {
@@ -279,14 +281,24 @@ class PolarizationProblem final : public Problem {
   std::size_t exposure_ = 0, own_exposure_ = 0;
 };
 
+std::vector<std::unique_ptr<Problem>> problems_of(const manifest::Document& document, const ProblemOptions& options,
+                                                  KnownLight* known) {
+  std::vector<std::unique_ptr<Problem>> problems;
+  for (const std::string& camera : mosaic_cameras(document))
+    problems.push_back(std::make_unique<PolarizationProblem>(document, options, camera, known));
+  return problems;
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<Problem>> polarization_problems(const manifest::Document& document,
                                                             const ProblemOptions& options) {
-  std::vector<std::unique_ptr<Problem>> problems;
-  for (const std::string& camera : mosaic_cameras(document))
-    problems.push_back(std::make_unique<PolarizationProblem>(document, options, camera));
-  return problems;
+  return problems_of(document, options, nullptr);
+}
+
+std::vector<std::unique_ptr<Problem>> polarization_problems(const manifest::Document& document,
+                                                            const ProblemOptions& options, KnownLight& known) {
+  return problems_of(document, options, &known);
 }
 
 }  // namespace gonio::explain

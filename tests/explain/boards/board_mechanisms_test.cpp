@@ -1,6 +1,7 @@
 // Every effect of tables of corners, left out of the base model and put into boards that share no code with the library
 // (explain/board_world.h): it is named, located, its interval covers; where it is absent it is not named; and where the
-// recordings cannot show it, explain says so.
+// recordings cannot show it, explain says so. Two recordings are asked two things each, of one answer.
+// One process: BoardMechanisms.*
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -87,10 +88,15 @@ TEST(BoardMechanisms, AMovingPupilIsANonCentralLens) {
   EXPECT_THAT(a.e.conditions[0].name, testing::AnyOf("camera.image-radius-over-distance", "camera.distance"));
 }
 
-TEST(BoardMechanisms, AStretchedPrintIsTheBoards) {
+const Answer& stretched() {
   CaseTruth truth;
   truth.board.stretch_x = 0.004;
-  const Answer a = explained(truth, known_lens(), 12, 3);
+  static const Answer answer = explained(truth, known_lens(), 12, 3);
+  return answer;
+}
+
+TEST(BoardMechanisms, AStretchedPrintIsTheBoards) {
+  const Answer& a = stretched();
   EXPECT_THAT(a.named, testing::ElementsAre("board.scale")) << a.e.sentence;
   expect_covers(a, "board.scale.scale_x", 0.004);
   EXPECT_EQ(a.e.conditions[0].name, "board.roll");
@@ -99,14 +105,13 @@ TEST(BoardMechanisms, AStretchedPrintIsTheBoards) {
 
 // What is named goes into the manifest's mechanisms, the base model of a second look has it, and nothing is left.
 TEST(BoardMechanisms, WhatIsNamedIsModelledInTheManifest) {
-  CaseTruth truth;
-  truth.board.stretch_x = 0.004;
-  Answer a = explained(truth, known_lens(), 12, 3);
-  a.problem->apply(a.e, a.document);
-  const manifest::MechanismUse& use = a.document.mechanisms.at("board.scale");
+  const Answer& a = stretched();
+  manifest::Document document = a.document;
+  a.problem->apply(a.e, document);
+  const manifest::MechanismUse& use = document.mechanisms.at("board.scale");
   EXPECT_THAT(use.on, testing::ElementsAre("b"));
   EXPECT_NEAR(use.parameters.at("scale_x").scalar(), 0.004, 5e-4);
-  const auto again = boards_problem(boards_input(a.document));
+  const auto again = boards_problem(boards_input(document));
   for (const Candidate& c : again->candidates()) EXPECT_NE(c.id(), "board.scale");
   const Explanation e = explain(*again, {});
   EXPECT_EQ(e.verdict, Verdict::null) << e.sentence;
@@ -125,8 +130,13 @@ CaseTruth drifting() {
   return truth;
 }
 
+const Answer& drift_over_a_fixed_target() {
+  static const Answer answer = explained(drifting(), warming(), 3, 4);
+  return answer;
+}
+
 TEST(BoardMechanisms, ADriftOverAFixedTargetIsTheCamerasTemperature) {
-  const Answer a = explained(drifting(), warming(), 3, 4);
+  const Answer& a = drift_over_a_fixed_target();
   EXPECT_THAT(a.named, testing::ElementsAre("camera.thermal")) << a.e.sentence;
   expect_covers(a, "camera.thermal.x_px_per_K", 0.08);
   expect_covers(a, "camera.thermal.y_px_per_K", -0.05);
@@ -139,7 +149,7 @@ TEST(BoardMechanisms, AMovedBoardHidesTheDriftAndTheIsolabilitySaysSo) {
   CaseDesign moved = warming();
   moved.takes = 1;
   const Answer a = explained(drifting(), moved, 24, 4);
-  const Answer fixed = explained(drifting(), warming(), 3, 4);
+  const Answer& fixed = drift_over_a_fixed_target();
   EXPECT_LT(a.isolability("camera.thermal").surviving_share, 0.1);
   EXPECT_GT(fixed.isolability("camera.thermal").surviving_share, 0.3);
 }

@@ -68,14 +68,15 @@ TEST(Clouds, OfARigThatLeavesNothingOutShowNothing) {
 }
 
 TEST(Clouds, TellTheProjectorsGamma) {
-  const Answer a = explained({.shape = Shape::planes, .clouds = 4, .gamma = 1.3, .seed = 5});
+  ScratchFolder folder;
+  const manifest::Document measured =
+      measured_clouds({.shape = Shape::planes, .clouds = 4, .gamma = 1.3, .seed = 5}, folder.path());
+  const Answer a = explained(measured);
   EXPECT_THAT(a.named, testing::ElementsAre("projector.gamma")) << a.e.sentence;
   expect_covered(a, "projector.gamma.gamma", 1.3, 0.01);
   EXPECT_EQ(a.document.mechanisms.at("projector.gamma").on, std::vector<std::string>{"projector"});
   // Asked again with it switched on, they show nothing more.
-  ScratchFolder folder;
-  manifest::Document again =
-      measured_clouds({.shape = Shape::planes, .clouds = 4, .gamma = 1.3, .seed = 5}, folder.path());
+  manifest::Document again = measured;
   again.mechanisms = a.document.mechanisms;
   EXPECT_THAT(explained(std::move(again)).named, testing::IsEmpty());
 }

@@ -46,6 +46,17 @@ io::TriangleMesh body() {
   return mesh;
 }
 
+// As the mesh in the file has it, in all views; once for all that is said of it afterwards.
+const std::vector<io::Image>& rendered_body(const manifest::Document& document) {
+  static std::vector<io::Image> pictures;
+  if (!pictures.empty()) return pictures;
+  const scene::Scene scene = scene::build_scene(document);
+  const render::RayCaster caster(scene.instances);
+  for (std::size_t v = 0; v < scene.views.size(); ++v)
+    pictures.push_back(render::render(scene, v, caster, {.spp = 24, .seed = 3, .geometry = false}));
+  return pictures;
+}
+
 class Misread : public testing::Test {
  protected:
   // `change`: of the vertices in the file, after everything was recorded.
@@ -55,17 +66,16 @@ class Misread : public testing::Test {
     document.meshes.at("ball") = {.file = "body", .normals = "flat"};
     io::TriangleMesh mesh = body();
     io::write_ply(folder_ / "body.ply", mesh);
-    const scene::Scene scene = scene::build_scene(document);
-    const render::RayCaster caster(scene.instances);
-    for (std::size_t v = 0; v < scene.views.size(); ++v) {
-      const io::Image rendered = render::render(scene, v, caster, {.spp = 24, .seed = 3, .geometry = false});
+    const std::vector<io::Image>& pictures = rendered_body(document);
+    for (std::size_t v = 0; v < pictures.size(); ++v) {
+      const io::Image& rendered = pictures[v];
       io::Image picture(rendered.width, rendered.height, {"R", "G", "B"});
       Random random(5, v);
       for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x)
           for (int c = 0; c < 3; ++c)
             picture.data[picture.index(x, y, c)] = rendered.at(x, y, c) + static_cast<float>(0.002 * random.normal());
-      io::write_picture(folder_ / (scene.views[v].image + ".exr"), picture);
+      io::write_picture(folder_ / (document.images[v].id + ".exr"), picture);
     }
     if (change) {
       for (Vec3& p : mesh.positions_m) p = change(p);

@@ -1,14 +1,21 @@
 // A metal ball and a ball of black glass before a polarized screen, photographed by a polarization camera as render and
 // its sensor have it.
 #pragma once
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/text.h"
 #include "data.h"
 #include "io/exr.h"
 #include "io/picture.h"
 #include "manifest/document.h"
+#include "manifest/sections/mechanism_use.h"
+#include "mechanism/mechanism.h"
 #include "render/looking_at.h"
 #include "render/path_tracer.h"
 #include "render/sensor_chain.h"
@@ -55,20 +62,35 @@ inline std::string mosaic_scene(const std::string& further = "", double degree =
          images + "]" + further + "}";
 }
 
-// Photographs of the scene `made`, into the folder.
+// What the scene's pictures are before a sensor, by its text without mechanisms and the seed: rendered once in a
+// process, for tests that differ in what the camera does to the same light.
+inline const std::vector<io::Image>& light_of_mosaics(manifest::Document document, std::uint64_t seed) {
+  for (const auto& [id, use] : document.mechanisms)
+    if (!render::in_sensor_chain(*mechanism::find_mechanism(id)))
+      throw std::logic_error(id + " acts before the sensor");
+  document.mechanisms.clear();
+  static std::map<std::pair<std::string, std::uint64_t>, std::vector<io::Image>> known;
+  std::vector<io::Image>& seen = known[{manifest::print_document(document, document.folder), seed}];
+  if (!seen.empty()) return seen;
+  const scene::Scene scene = scene::build_scene(document);
+  const render::RayCaster caster(scene.instances);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(mosaic_views); ++k)
+    seen.push_back(render::render(
+        scene, k, caster,
+        {.spp = 256, .seed = seed, .geometry = false, .transport = {.stokes = true, .from_lights = false}}));
+  return seen;
+}
+
+// Photographs of the scene `made`, whose mechanisms are the camera's, into the folder.
 inline void photograph_mosaics(const std::string& made, const std::filesystem::path& folder, std::uint64_t seed) {
   io::Image white(2, 2, {"R", "G", "B"});
   std::fill(white.data.begin(), white.data.end(), 1.0f);
   io::write_picture(folder / "white.exr", white);
   const manifest::Document document = manifest::parse_document(made, "made.json", folder);
-  const scene::Scene scene = scene::build_scene(document);
-  const render::RayCaster caster(scene.instances);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(mosaic_views); ++k) {
+  const std::vector<io::Image>& light = light_of_mosaics(document, seed);
+  for (std::size_t k = 0; k < light.size(); ++k) {
     const std::string id = format("i%zu", k);
-    const io::Image seen = render::render(
-        scene, k, caster,
-        {.spp = 256, .seed = seed, .geometry = false, .transport = {.stokes = true, .from_lights = false}});
-    io::write_picture(folder / (id + ".exr"), render::recorded(seen, render::sensor_of(document, k), id, seed));
+    io::write_picture(folder / (id + ".exr"), render::recorded(light[k], render::sensor_of(document, k), id, seed));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "explain/polarization/known_light.h"
 #include "explain/polarization/polarization_problem.h"
 #include "explain/polarization/polarization_term.h"
 #include "inference/explanation.h"
@@ -23,8 +24,10 @@ namespace {
 using gonio::tests::ScratchFolder;
 using testing::HasSubstr;
 
+// What the stated scene sends is the same in all tests, and traced once.
 std::unique_ptr<Problem> problem_of(const std::string& stated, const std::filesystem::path& folder) {
-  return std::move(polarization_problems(manifest::parse_document(stated, "scene.json", folder), {}).at(0));
+  static polarization::KnownLight known;
+  return std::move(polarization_problems(manifest::parse_document(stated, "scene.json", folder), {}, known).at(0));
 }
 
 // The candidate's fit where the scene `made` was photographed and the plain one is stated.

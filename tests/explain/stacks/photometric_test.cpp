@@ -1,4 +1,6 @@
-// Stacks of lights made by other code: gloss, rough matte surfaces, lamps that stand elsewhere, and nothing.
+// Stacks of lights made by other code: gloss, rough matte surfaces, lamps that stand elsewhere, and nothing. Of the
+// glossy ball two things are asked, of one answer.
+// One process: Photometric.*
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,6 +51,16 @@ Outcome run(const LightWorld& world) {
   return o;
 }
 
+LightWorld glossy_world() {
+  LightWorld world;
+  world.f0 = 0.05;
+  return world;
+}
+const Outcome& glossy() {
+  static const Outcome outcome = run(glossy_world());
+  return outcome;
+}
+
 TEST(Photometric, NothingIsNamedOfAMatteBall) {
   const Outcome o = run({});
   EXPECT_EQ(o.explanation.verdict, Verdict::null) << o.told();
@@ -56,9 +68,8 @@ TEST(Photometric, NothingIsNamedOfAMatteBall) {
 
 // Lamps are proposed where none stood, and what they would show of a gloss is seen in some and not in the dark.
 TEST(Photometric, LampsAreProposedWhereNoneStood) {
-  LightWorld world;
-  world.f0 = 0.05;
-  const Outcome o = run(world);
+  const LightWorld world = glossy_world();
+  const Outcome& o = glossy();
   const std::vector<Proposal> proposals = o.problem->proposals();
   ASSERT_GT(proposals.size(), 3u);
   const auto& problem = dynamic_cast<const PhotometricProblem&>(*o.problem);
@@ -87,9 +98,8 @@ TEST(Photometric, LampsAreProposedWhereNoneStood) {
 }
 
 TEST(Photometric, GlossIsNamedWithItsNumbers) {
-  LightWorld world;
-  world.f0 = 0.05;
-  const Outcome o = run(world);
+  const LightWorld world = glossy_world();
+  const Outcome& o = glossy();
   ASSERT_EQ(o.named, (Names{"surface.interface"})) << o.told();
   // The ball's masking is separable and takes more than the height-correlated one that explains it.
   EXPECT_NEAR(o.value("surface.interface.f0"), world.f0, 0.15 * world.f0);

@@ -1,4 +1,5 @@
 // explain on mosaic photographs as a person runs it; what is wrong is said in one line.
+// One process: ExplainPolarization.*
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

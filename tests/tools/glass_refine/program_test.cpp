@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 using Words = Process::Words;
 
 // A recording of five views, made once.
+// One process: GlassRefine.*
 class GlassRefine : public testing::Test {
  protected:
   static const fs::path& folder() {
