@@ -25,9 +25,9 @@ void shuffle(Values& values, Random& random) {
     std::swap(values[i - 1], values[random.below(static_cast<std::uint32_t>(i))]);
 }
 
-// A tenth of the groups, to the nearest whole, is for the test and as many for validation. Group i is of kind i % kinds;
-// a share has as many of each kind as of any other, but for one: what is calibrated on a share that has too many of a
-// difficult kind errs elsewhere.
+// A tenth of the groups, to the nearest whole, is for the test and as many for validation. Group i is of kind
+// i % kinds; a share has as many of each kind as of any other, but for one: what is calibrated on a share that has too
+// many of a difficult kind errs elsewhere.
 std::vector<Share> split(std::size_t groups, std::size_t kinds, std::uint64_t seed) {
   Random random(seed, split_stream);
   std::vector<std::vector<std::size_t>> of_kind(kinds);
