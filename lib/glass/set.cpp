@@ -66,8 +66,8 @@ GlassSet::GlassSet(SetWish wish, std::filesystem::path folder) : wish_(std::move
   std::vector<std::size_t> group;
   for (const auto& path : wish_.meshes)
     group.push_back(known.emplace(sha256_of_file(path), known.size()).first->second);
-  const std::vector<Share> of_group = wish_.meshes.empty() ? split(wish_.objects, wish_.forms.size(), wish_.seed)
-                                                           : split(known.size(), 1, wish_.seed);
+  const std::vector<Share> of_group =
+      wish_.meshes.empty() ? split(wish_.objects, wish_.forms.size(), wish_.seed) : split(known.size(), 1, wish_.seed);
   for (std::size_t i = 0; i < wish_.objects; ++i)
     shares_.push_back(of_group[wish_.meshes.empty() ? i : group[i % group.size()]]);
 }

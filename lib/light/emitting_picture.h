@@ -21,9 +21,7 @@ class EmittingPicture {
     return channels >= 3 ? Rgb{pixel[0], pixel[1], pixel[2]} * scale_ : scale_ * double{pixel[0]};
   }
   // For sampling: Rec. 709 luminance, positive wherever a band is.
-  double importance(std::size_t x, std::size_t y) const {
-    return luminance_of(radiance(x, y));
-  }
+  double importance(std::size_t x, std::size_t y) const { return luminance_of(radiance(x, y)); }
 
  private:
   std::shared_ptr<const io::Image> picture_;

@@ -1,5 +1,5 @@
-// optics.veiling-glare: reflections at nearly normal incidence inside the lens keep their polarization, so that the veil
-// has the picture's mean Stokes vector, and a sample the mean of those behind the same polarizer.
+// optics.veiling-glare: reflections at nearly normal incidence inside the lens keep their polarization, so that the
+// veil has the picture's mean Stokes vector, and a sample the mean of those behind the same polarizer.
 #include "render/mechanisms/optics_veiling_glare.h"
 
 #include "explain/polarization/polarization_term.h"
