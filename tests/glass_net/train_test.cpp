@@ -116,9 +116,25 @@ TEST_F(GlassNet, RunsBecomeATable) {
   const Ended ended = run(table, path("."));
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, testing::HasSubstr("front alone, light: lit, loss: scales"));
-  EXPECT_THAT(ended.out, testing::HasSubstr("Against RGB (over seeds and objects; 95 % interval; p after Holm over"));
-  EXPECT_THAT(ended.out, testing::ContainsRegex("front alone, lit: front / deg by intensities: [0-9.]+ \\("));
+  EXPECT_THAT(ended.out, testing::HasSubstr("too few seeds, or objects of the test share"));  // one object
   EXPECT_THAT(read_file(path("table.csv")), testing::HasSubstr("lit,scales,front alone,rgb,mask_l1,2,"));
+  // As if five more objects had been judged, all of which intensities get wrong by a tenth more.
+  const std::string more =
+      "import json, sys\n"
+      "for path in sys.argv[1:]:\n"
+      "    run = json.load(open(path))\n"
+      "    (of,) = run['test_objects'].values()\n"
+      "    worse = 1.1 if 'intensities' in path else 1.0\n"
+      "    for k in range(5):\n"
+      "        run['test_objects'][f'more {k}'] = {key: (1 + k / 10) * worse * v for key, v in of.items()}\n"
+      "    json.dump(run, open(path, 'w'))\n";
+  Words several{"/usr/bin/python3", "-c", more};
+  several.insert(several.end(), table.begin() + 1, table.begin() + 5);
+  ASSERT_EQ(run(several, path(".")).status, 0);
+  const Ended told = run(table, path("."));
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.out, testing::HasSubstr("Against RGB (over seeds and objects; 95 % interval; p after Holm over"));
+  EXPECT_THAT(told.out, testing::ContainsRegex("front alone, lit: front / deg by intensities: [0-9.]+ \\("));
   EXPECT_EQ(run({(scripts / "table").string()}, path(".")).status, 64);
   EXPECT_EQ(run({(scripts / "table").string(), "set.json"}, path(".")).status, 65);
 }
@@ -191,7 +207,9 @@ TEST_F(GlassNet, TheProgramTilesAndShrinks) {
 TEST_F(GlassNet, TheProgramRefuses) {
   const Ended trained = train("refusing", {"--epochs", "1", "--input", "stokes"});
   ASSERT_EQ(trained.status, 0) << trained.err;
-  io::write_picture(path("grey.png"), io::Image(64, 64, {"Y"}));
+  io::Image grey(64, 64, {"Y"});
+  for (std::size_t i = 0; i < grey.data.size(); ++i) grey.data[i] = 0.2F + 0.01F * static_cast<float>(i % 64);
+  io::write_picture(path("grey.png"), grey);
   io::write_picture(path("colours.exr"), io::Image(64, 64, {"R", "G", "B"}));
   const auto refused = [&](const Words& more, int status, const std::string& mentions) {
     Words all{"glass-net", "--out", "nothing"};
