@@ -88,17 +88,19 @@ void add_maps(report::Page& page, const View& view, const io::Image& maps) {
 std::string page_of(const Refined& refined, std::span<const View> views, std::size_t held_out,
                     const std::vector<io::Image>& maps, const Rendered& hull, const Rendered& body) {
   const bool by_light = refined.index_sigma > 0;
-  report::Page page("glass-refine",
-                    by_light ? "A body that bends the light as it was photographed"
-                             : "A body by outlines and normals; its light says no more",
-                    format("%zu views, %s kept out", views.size(), views[held_out].id.c_str()));
+  report::Page page(
+      "glass-refine",
+      format(by_light ? "The body explains %.0f %% of the light in a view that the fit never saw"
+                      : "A body by outlines and normals alone: %.0f %% of the light in a view that the fit never saw",
+             100 * (1 - refined.best().unexplained_held_out)),
+      format("%zu views, %s kept out", views.size(), views[held_out].id.c_str()));
   std::vector<report::KeyNumber> numbers;
   numbers.push_back(
       {"index of refraction",
        format("%.3f", refined.best().glass.index) + (by_light ? format(" \u00b1 %.3f", refined.index_sigma) : ""), "",
        by_light ? "" : "as given"});
-  for (const auto& [name, channel] :
-       {std::pair{"front, to", "uncertainty.normal"}, {"back, to", "uncertainty.back_normal"}})
+  for (const auto& [name, channel] : {std::pair{"normals of the front, to", "uncertainty.normal"},
+                                      {"normals of the back, to", "uncertainty.back_normal"}})
     if (maps[held_out].channel(channel) >= 0)
       numbers.push_back({name, format("%.2g", middle_of(values_within(maps[held_out], channel)) * degrees), "\u00b0",
                          "median; 68.3 % err by less"});
