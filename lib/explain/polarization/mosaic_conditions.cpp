@@ -68,7 +68,7 @@ class Conditions {
     std::vector<double> veil;
     const auto mean_of = [&](const Row& row) {
       const Site& site = light_.site(row.tile, row.place);
-      return means_[light_.tiles()[row.tile].image][static_cast<std::size_t>(2 * (site.y & 1) + (site.x & 1))];
+      return means_[light_.tiles()[row.tile].image][polarizer_over(site.x, site.y)];
     };
     for (const Row& row : rows_) veil.push_back(mean_of(row));
     add("image.mean", "1", "optics", mean_of, veil);

@@ -275,7 +275,7 @@ void MosaicLight::readings(std::size_t tile, const State& state, std::vector<dou
     for (std::size_t x = around; x + around < side_px; ++x) {
       const Site& here = site(tile, y * side_px + x);
       const StokesVector s = stokes(tile * in_a_tile + y * side_px + x, state);
-      const auto filter = static_cast<std::size_t>((here.y & 1) * 2 + (here.x & 1));
+      const std::size_t filter = polarizer_over(here.x, here.y);
       const std::array<double, 4> of = state.array.retardance_rad == 0
                                            ? row[filter]
                                            : photograph::analyser(state.array, here.x, here.y, here.radius);

@@ -32,6 +32,11 @@ using StokesVector = std::array<double, 4>;
 inline constexpr int core_px = 8, side_px = core_px + 2;
 inline constexpr std::size_t no_mirror = static_cast<std::size_t>(-1);
 
+// Which of the super-pixel's four polarizers stands over a pixel.
+inline std::size_t polarizer_over(int x, int y) {
+  return static_cast<std::size_t>(2 * (y & 1) + (x & 1));
+}
+
 struct Tile {
   std::size_t image = 0;  // place in Recordings::images
   int x = 0, y = 0;       // of its first pixel, which is around the core

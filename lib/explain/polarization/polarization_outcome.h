@@ -21,7 +21,7 @@ struct Use {  // a form of a mechanism, and the places of all its declaration's 
   std::vector<double> neutral;
 };
 
-// Of a picture's samples behind each polarizer, at 2 (row & 1) + (column & 1).
+// Of a picture's samples behind each polarizer, at polarizer_over().
 using PolarizerMeans = std::array<double, 4>;
 
 // `state`: without any hypothesis; `gain`: from the simulation to the recordings, of whose pictures the means are.

@@ -90,16 +90,15 @@ class PolarizationProblem final : public Problem {
   // In units of the recordings. Their means have the veil in them.
   double veil(const State& state, const Row& row) const {
     const Site& site = light_.site(row.tile, row.place);
-    const double mean = mean_[light_.tiles()[row.tile].image][filter_of(site.x, site.y)];
+    const double mean = mean_[light_.tiles()[row.tile].image][polarizer_over(site.x, site.y)];
     return equation::optics_veiling_glare(0, state.veil, mean / (1 + state.veil));
   }
-  static std::size_t filter_of(int x, int y) { return static_cast<std::size_t>(2 * (y & 1) + (x & 1)); }
   void find_means() {
     for (const relighting::Recording& image : light_.recordings().images) {
       PolarizerMeans sum{}, count{};
       for (int y = 0; y < image.picture.height; ++y)
         for (int x = 0; x < image.picture.width; ++x)
-          sum[filter_of(x, y)] += image.picture.at(x, y, 0), ++count[filter_of(x, y)];
+          sum[polarizer_over(x, y)] += image.picture.at(x, y, 0), ++count[polarizer_over(x, y)];
       for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= std::max(1.0, count[k]);
       mean_.push_back(sum);
     }
